@@ -1,0 +1,6 @@
+"""The one door to Numba, and the small tensors every kernel uses. Knows no physics."""
+
+from rfmpm.kernel_tools.jit import at, cache_folder, generic, inlined, kernel, put
+from rfmpm.kernel_tools.tensors import Tensor, Vector
+
+__all__ = ["Tensor", "Vector", "at", "cache_folder", "generic", "inlined", "kernel", "put"]

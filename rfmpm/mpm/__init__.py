@@ -1,0 +1,1 @@
+"""The material point engine: plane strain, explicit, compiled. Knows no statistics, files or MPI."""

@@ -1,0 +1,17 @@
+"""Linear hat functions."""
+
+from typing import NamedTuple
+
+
+class Linear(NamedTuple):
+    """Two nodes along one axis of `cells` cells between two walls."""
+
+    inverse_cell: float  # [1/m]
+    cells: int
+
+    def weights(self, x):
+        """Hat functions; a point on the far wall belongs to the last cell."""
+        s = x * self.inverse_cell
+        i = min(int(s), self.cells - 1)
+        f = s - i
+        return i, (1.0 - f, f), (-self.inverse_cell, self.inverse_cell)

@@ -1,0 +1,116 @@
+"""Explicit time integration: forward in velocity, backward in position, stress last."""
+
+from math import exp, inf
+from typing import NamedTuple
+
+from rfmpm.kernel_tools import kernel
+from rfmpm.mpm.solvers.grid import clear, divide_straining, subtract_second_projection, update_grid
+from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNING, Progress
+from rfmpm.mpm.transfer import carry_points, project_twice, update_velocities
+
+
+class Controls(NamedTuple):
+    """Numbers that steer the time integration."""
+
+    gravity: float  # [m/s2]
+    cell: float  # [m]
+    wave_speed: float  # of compression, the largest of the scene [m/s]
+    step_fraction: float  # of the critical time step [-]
+    dissipation_time: float  # time in which velocities relax to the filtered grid velocity [s]
+    filter_interval: int  # steps from one application of the filter to the next
+    rest_fraction: float  # of the largest kinetic energy, below which a scene counts as quiet [-]
+    rest_time: float  # quiet this long is at rest [s]
+    energy_scale: float  # kinetic and elastic energy at the start [J/m]
+    growth_limit: float  # energy out of nothing that ends a run, as a share of the scale and of gravity's work [-]
+    second_mapping: bool | None  # True: the grid strains the points after their velocities (MUSL); None: before
+
+
+@kernel
+def step(now, points, law, history, axes, grid, walls, controls):
+    """Advance everything by one time step; a first call with no nodes touched only fills the grid.
+
+    Returns the new progress.
+    """
+    box = now.first_column, now.last_column, now.first_row, now.last_row
+    dt, since_filter, blend, filtering = 0.0, 0.0, 0.0, False
+    gain = friction = 0.0
+    if now.last_row >= 0:
+        dt = controls.step_fraction * controls.cell / (controls.wave_speed + now.fastest)
+        since_filter = now.since_filter + dt
+        filtering = now.step_count % controls.filter_interval == 0 and controls.dissipation_time < inf
+        gain, friction = update_grid(grid, walls, box, controls.gravity, dt)
+    if filtering:
+        blend = 1.0 - exp(-since_filter / controls.dissipation_time)
+        since_filter = 0.0
+        clear(grid.filtered, box)
+        project_twice(points, axes, grid)
+        subtract_second_projection(grid, box)
+    if controls.second_mapping is None:
+        clear(grid.sums, box)
+        if filtering:
+            moved = carry_points(points, law, history, axes, grid, grid.filtered, blend, None, dt)
+        else:
+            moved = carry_points(points, law, history, axes, grid, None, blend, None, dt)
+    else:
+        clear(grid.straining, box)
+        if filtering:
+            update_velocities(points, axes, grid, grid.filtered, blend, grid.straining)
+        else:
+            update_velocities(points, axes, grid, None, blend, grid.straining)
+        divide_straining(grid, walls, box)
+        clear(grid.sums, box)
+        moved = carry_points(points, law, history, axes, grid, None, blend, grid.straining, dt)
+    kinetic, fall, work, fastest, first_column, last_column, first_row, last_row, culprit = moved
+    peak = max(now.peak_kinetic, kinetic)
+    quiet = now.quiet_time + dt if kinetic < controls.rest_fraction * peak else 0.0
+    after = Progress(
+        now.status, now.time + dt, now.step_count + (dt > 0.0), kinetic, peak, quiet, since_filter, fastest**0.5,
+        now.gravity_work + controls.gravity * fall, now.stress_work + work, now.friction_work + friction,
+        now.grid_gain + gain, first_column, last_column, first_row, last_row, culprit,
+    )  # fmt: skip
+    return judge(after, points, controls)
+
+
+@kernel
+def judge(now, points, controls):
+    """Decide whether the run goes on. Returns the progress with its status."""
+    status = RUNNING
+    spent = now.kinetic + now.stress_work + now.friction_work
+    scale = controls.energy_scale + abs(now.gravity_work)
+    if now.culprit >= 0:
+        x, y = points.position.x[now.culprit], points.position.y[now.culprit]
+        gone = points.velocity.x[now.culprit] + points.velocity.y[now.culprit] + x + y
+        status = LEFT_GRID if abs(gone) < inf else NOT_A_NUMBER
+    elif not now.kinetic < inf:
+        status = NOT_A_NUMBER
+    elif spent - now.gravity_work > controls.energy_scale + controls.growth_limit * scale:
+        status = ENERGY_GREW
+    elif now.quiet_time >= controls.rest_time:
+        status = AT_REST
+    return Progress(
+        status, now.time, now.step_count, now.kinetic, now.peak_kinetic, now.quiet_time, now.since_filter, now.fastest,
+        now.gravity_work, now.stress_work, now.friction_work, now.grid_gain,
+        now.first_column, now.last_column, now.first_row, now.last_row, now.culprit,
+    )  # fmt: skip
+
+
+@kernel
+def advance(now, until, points, law, history, axes, grid, walls, controls):
+    """Step until the time is `until` or later, or the run ends.
+
+    Args:
+        now: progress so far; `start()` at the beginning.
+        until: model time [s].
+        points, history: arrays, changed in place.
+        law: constitutive law.
+        axes: shape functions.
+        grid: nodes; belongs to this run.
+        walls: what holds the domain's edges.
+        controls: numbers of the time integration.
+
+    Returns:
+        The progress, with its status.
+    """
+    while now.status == RUNNING and (now.time < until or now.last_row < 0):
+        now = step(now, points, law, history, axes, grid, walls, controls)
+    return now

@@ -1,0 +1,100 @@
+"""What happens on the nodes within a step: momentum equation, walls, and the filtered and straining velocities."""
+
+from rfmpm.kernel_tools import kernel
+from rfmpm.mpm.protocols import constrain
+from rfmpm.mpm.state import (
+    CHANGE_X,
+    CHANGE_Y,
+    FORCE_X,
+    FORCE_Y,
+    MASS,
+    MOMENTUM_X,
+    MOMENTUM_Y,
+    VELOCITY_X,
+    VELOCITY_Y,
+)
+
+
+@kernel
+def apply_walls(walls, vx, vy, push_x, push_y, row, column, last_column):
+    """Velocity of a wall's node before and after the step, (x, y, x, y), from the one before and its trial change.
+
+    The velocity before is constrained too: what the lumped projection puts on a wall moves nothing and does no work.
+    """
+    after_x, after_y = vx + push_x, vy + push_y
+    if column == 0:
+        vx, vy, after_x, after_y = constrain(walls.sides, vx, vy, push_x, push_y)
+    elif column == last_column:
+        vx, vy, after_x, after_y = constrain(walls.sides, -vx, vy, -push_x, push_y)
+        vx, after_x = -vx, -after_x
+    if row == 0:
+        vy, vx, after_y, after_x = constrain(walls.base, vy, vx, after_y - vy, after_x - vx)
+    return vx, vy, after_x, after_y
+
+
+@kernel
+def update_grid(grid, walls, box, gravity, dt):
+    """Solve m dv/dt = f - m g on the touched nodes, within what the walls allow.
+
+    Returns (gain of kinetic energy, work taken by the walls), both [J/m].
+    """
+    gain = friction = 0.0
+    last_column = grid.sums.shape[1] - 1
+    for row in range(box[2], box[3] + 1):
+        for column in range(box[0], box[1] + 1):
+            m = grid.sums[row, column, MASS]
+            old_x = old_y = vx = vy = 0.0
+            if m > 0.0:
+                old_x, old_y = grid.sums[row, column, MOMENTUM_X] / m, grid.sums[row, column, MOMENTUM_Y] / m
+                push_x = dt * grid.sums[row, column, FORCE_X] / m
+                push_y = dt * (grid.sums[row, column, FORCE_Y] / m - gravity)
+                vx, vy = old_x + push_x, old_y + push_y
+                if row == 0 or column == 0 or column == last_column:
+                    old_x, old_y, vx, vy = apply_walls(walls, old_x, old_y, push_x, push_y, row, column, last_column)
+                    friction += 0.5 * m * ((old_x + push_x - vx) * (old_x + vx) + (old_y + push_y - vy) * (old_y + vy))
+                gain += 0.5 * m * (vx * vx + vy * vy - old_x * old_x - old_y * old_y)
+            grid.flow[row, column, VELOCITY_X], grid.flow[row, column, VELOCITY_Y] = vx, vy
+            grid.flow[row, column, CHANGE_X], grid.flow[row, column, CHANGE_Y] = vx - old_x, vy - old_y
+    return gain, friction
+
+
+@kernel
+def subtract_second_projection(grid, box):
+    """Turn `grid.filtered` from the momentum of the second projection into the velocity of FMPM(2).
+
+    v = 2 v+ - S+ S v+ (Nairn and Hammerquist 2021, eq. 27 with two terms); a wall's own nodes keep v+, which meets the
+    wall's condition.
+    """
+    last_column = grid.sums.shape[1] - 1
+    for row in range(box[2], box[3] + 1):
+        for column in range(box[0], box[1] + 1):
+            m = grid.sums[row, column, MASS]
+            on_wall = row == 0 or column == 0 or column == last_column
+            for k in range(2):
+                v = grid.flow[row, column, k]
+                if m > 0.0 and not on_wall:
+                    v = 2.0 * v - grid.filtered[row, column, k] / m
+                grid.filtered[row, column, k] = v
+
+
+@kernel
+def divide_straining(grid, walls, box):
+    """Turn `grid.straining` from the momentum of the updated points into a velocity that meets the walls."""
+    last_column = grid.sums.shape[1] - 1
+    for row in range(box[2], box[3] + 1):
+        for column in range(box[0], box[1] + 1):
+            m = grid.sums[row, column, MASS]
+            if m <= 0.0:
+                continue
+            vx, vy = grid.straining[row, column, 0] / m, grid.straining[row, column, 1] / m
+            _, _, vx, vy = apply_walls(walls, vx, vy, 0.0, 0.0, row, column, last_column)
+            grid.straining[row, column, 0], grid.straining[row, column, 1] = vx, vy
+
+
+@kernel
+def clear(values, box):
+    """Set the touched nodes of an array (rows, columns, k) to zero."""
+    for row in range(box[2], box[3] + 1):
+        for column in range(box[0], box[1] + 1):
+            for k in range(values.shape[2]):
+                values[row, column, k] = 0.0

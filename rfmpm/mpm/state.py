@@ -1,0 +1,95 @@
+"""What changes in time: points, grid and the progress of a run."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rfmpm.kernel_tools import Tensor, Vector
+
+
+class Points(NamedTuple):
+    """Material points, one array entry each (structure of arrays)."""
+
+    position: Vector  # [m]
+    velocity: Vector  # [m/s]
+    mass: np.ndarray  # [kg per m of width]
+    volume: np.ndarray  # [m3 per m of width]
+    stress: Tensor  # Cauchy stress, tension positive [Pa]
+
+
+class Grid(NamedTuple):
+    """Nodes, row by row from the base up; the values of one node lie side by side."""
+
+    sums: np.ndarray  # (rows, columns, 5): mass, momentum x y, internal force x y; per m of width
+    flow: np.ndarray  # (rows, columns, 4): velocity x y [m/s], its change over the step x y [m/s]
+    filtered: np.ndarray  # (rows, columns, 2): momentum of a second projection, then a velocity [m/s]
+    straining: np.ndarray  # (rows, columns, 2): momentum of the updated points, then a velocity [m/s] (MUSL)
+
+
+class Axes(NamedTuple):
+    """Shape function of each axis."""
+
+    x: tuple
+    y: tuple
+
+
+class Progress(NamedTuple):
+    """How far a run has come, its work so far, and what the next step needs; one is made per step."""
+
+    status: int
+    time: float  # [s]
+    step_count: int
+    kinetic: float  # kinetic energy of the points [J/m]
+    peak_kinetic: float  # the largest so far [J/m]
+    quiet_time: float  # how long the kinetic energy has been small [s]
+    since_filter: float  # time since the filter last acted [s]
+    fastest: float  # largest point speed [m/s]
+    gravity_work: float  # [J/m]
+    stress_work: float  # elastic and plastic [J/m]
+    friction_work: float  # taken by friction on walls [J/m]
+    grid_gain: float  # kinetic energy gained on the grid, summed over the steps [J/m]
+    first_column: int  # the nodes that points touch
+    last_column: int
+    first_row: int
+    last_row: int
+    culprit: int  # point that left the grid, or -1
+
+
+RUNNING, AT_REST, LEFT_GRID, NOT_A_NUMBER, ENERGY_GREW = range(5)
+
+MASS, MOMENTUM_X, MOMENTUM_Y, FORCE_X, FORCE_Y = range(5)
+VELOCITY_X, VELOCITY_Y, CHANGE_X, CHANGE_Y = range(4)
+
+
+def start() -> Progress:
+    """Make the progress of a run that has not begun."""
+    return Progress(
+        status=RUNNING,
+        time=0.0,
+        step_count=0,
+        kinetic=0.0,
+        peak_kinetic=0.0,
+        quiet_time=0.0,
+        since_filter=0.0,
+        fastest=0.0,
+        gravity_work=0.0,
+        stress_work=0.0,
+        friction_work=0.0,
+        grid_gain=0.0,
+        first_column=0,
+        last_column=-1,
+        first_row=0,
+        last_row=-1,
+        culprit=-1,
+    )
+
+
+def copy_points(points: Points) -> Points:
+    """Copy every array of the points, so that a run can change them."""
+    return Points(
+        Vector(*(a.copy() for a in points.position)),
+        Vector(*(a.copy() for a in points.velocity)),
+        points.mass.copy(),
+        points.volume.copy(),
+        Tensor(*(a.copy() for a in points.stress)),
+    )
