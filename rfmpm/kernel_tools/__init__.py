@@ -1,6 +1,21 @@
 """The one door to Numba, and the small tensors every kernel uses. Knows no physics."""
 
 from rfmpm.kernel_tools.jit import at, cache_folder, generic, inlined, kernel, put
+from rfmpm.kernel_tools.nodes import gather, gather_slopes, scatter, scatter_scalar, scatter_slopes
 from rfmpm.kernel_tools.tensors import Tensor, Vector
 
-__all__ = ["Tensor", "Vector", "at", "cache_folder", "generic", "inlined", "kernel", "put"]
+__all__ = [
+    "Tensor",
+    "Vector",
+    "at",
+    "cache_folder",
+    "gather",
+    "gather_slopes",
+    "generic",
+    "inlined",
+    "kernel",
+    "put",
+    "scatter",
+    "scatter_scalar",
+    "scatter_slopes",
+]

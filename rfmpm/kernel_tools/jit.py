@@ -20,7 +20,7 @@ from numba.extending import overload
 
 # Contraction lets the compiler fuse a product and a sum into one rounding; it leaves NaN and infinity alone.
 _OPTIONS = {"error_model": "numpy", "fastmath": {"contract"}}
-_INLINE = {"jit_options": {"forceinline": True, **_OPTIONS}}
+inline_options = {"jit_options": {"forceinline": True, **_OPTIONS}}
 
 
 def cache_folder() -> Path:
@@ -78,7 +78,7 @@ def generic(declaration):
 
     resolve.__signature__ = inspect.signature(declaration)
     call.__signature__ = inspect.signature(declaration)
-    overload(call, **_INLINE)(resolve)
+    overload(call, **inline_options)(resolve)
     return functools.update_wrapper(call, declaration)
 
 
@@ -98,7 +98,7 @@ def put(record, index, values):
             field[index] = value
 
 
-@overload(at, **_INLINE)
+@overload(at, **inline_options)
 def _at(record, index):
     if isinstance(record, types.NoneType):
         return lambda record, index: None
@@ -109,7 +109,7 @@ def _at(record, index):
     return _define("at", f"def at(record, index):\n    return cls({picks})", record)
 
 
-@overload(put, **_INLINE)
+@overload(put, **inline_options)
 def _put(record, index, values):
     if isinstance(record, types.NoneType):
         return lambda record, index, values: None

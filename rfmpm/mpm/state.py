@@ -18,12 +18,17 @@ class Points(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """Nodes, row by row from the base up; the values of one node lie side by side."""
+    """Nodes, row by row from the base up; but for the mass, four values of one node lie side by side."""
 
-    sums: np.ndarray  # (rows, columns, 5): mass, momentum x y, internal force x y; per m of width
-    flow: np.ndarray  # (rows, columns, 4): velocity x y [m/s], its change over the step x y [m/s]
-    filtered: np.ndarray  # (rows, columns, 2): momentum of a second projection, then a velocity [m/s]
-    straining: np.ndarray  # (rows, columns, 2): momentum of the updated points, then a velocity [m/s] (MUSL)
+    mass: np.ndarray  # (rows, columns) [kg/m]
+    sums: np.ndarray  # (rows, columns, 4): momentum x y [N s/m], internal force x y [N/m]
+    flow: np.ndarray  # (rows, columns, 4): velocity x y, its change over the step x y [m/s]
+    filtered: np.ndarray  # (rows, columns, 4): momentum of the second projection x y, then FMPM's velocity x y [m/s]
+    straining: np.ndarray  # (rows, columns, 4): momentum of the updated points x y, then their velocity x y (MUSL) [m/s]
+
+
+X, Y, FORCE_X, FORCE_Y = range(4)
+CHANGE_X, CHANGE_Y = 2, 3
 
 
 class Axes(NamedTuple):
@@ -56,9 +61,6 @@ class Progress(NamedTuple):
 
 
 RUNNING, AT_REST, LEFT_GRID, NOT_A_NUMBER, ENERGY_GREW = range(5)
-
-MASS, MOMENTUM_X, MOMENTUM_Y, FORCE_X, FORCE_Y = range(5)
-VELOCITY_X, VELOCITY_Y, CHANGE_X, CHANGE_Y = range(4)
 
 
 def start() -> Progress:

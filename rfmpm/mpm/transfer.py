@@ -5,92 +5,20 @@ Sulsky, Chen and Schreyer (1994) for the scheme, Nairn and Hammerquist (2021) fo
 
 from math import inf
 
-from rfmpm.kernel_tools import Tensor, at, inlined, kernel, put
-from rfmpm.mpm.protocols import update_stress, weights
-from rfmpm.mpm.state import (
-    CHANGE_X,
-    CHANGE_Y,
-    FORCE_X,
-    FORCE_Y,
-    MASS,
-    MOMENTUM_X,
-    MOMENTUM_Y,
-    VELOCITY_X,
-    VELOCITY_Y,
+from rfmpm.kernel_tools import (
+    Tensor,
+    at,
+    gather,
+    gather_slopes,
+    inlined,
+    kernel,
+    put,
+    scatter,
+    scatter_scalar,
+    scatter_slopes,
 )
-
-
-@inlined
-def gather_pair(values, i, wx, j, wy):
-    """Interpolate the first two values of the nodes: sum over nodes of w v."""
-    first = second = 0.0
-    for b in range(len(wy)):
-        row_first = row_second = 0.0
-        for a in range(len(wx)):
-            row_first += wx[a] * values[j + b, i + a, 0]
-            row_second += wx[a] * values[j + b, i + a, 1]
-        first += wy[b] * row_first
-        second += wy[b] * row_second
-    return first, second
-
-
-@inlined
-def gather_change(flow, i, wx, j, wy):
-    """Interpolate the change of velocity: sum over nodes of w dv."""
-    change_x = change_y = 0.0
-    for b in range(len(wy)):
-        row_x = row_y = 0.0
-        for a in range(len(wx)):
-            row_x += wx[a] * flow[j + b, i + a, CHANGE_X]
-            row_y += wx[a] * flow[j + b, i + a, CHANGE_Y]
-        change_x += wy[b] * row_x
-        change_y += wy[b] * row_y
-    return change_x, change_y
-
-
-@inlined
-def gather_gradient(values, i, wx, dx, j, wy, dy):
-    """Velocity gradient [1/s]: sum over nodes of v (x) grad w, as (lxx, lxy, lyx, lyy)."""
-    lxx = lxy = lyx = lyy = 0.0
-    for b in range(len(wy)):
-        row_x = row_y = slope_x = slope_y = 0.0
-        for a in range(len(wx)):
-            vx, vy = values[j + b, i + a, VELOCITY_X], values[j + b, i + a, VELOCITY_Y]
-            row_x += wx[a] * vx
-            row_y += wx[a] * vy
-            slope_x += dx[a] * vx
-            slope_y += dx[a] * vy
-        lxx += wy[b] * slope_x
-        lxy += dy[b] * row_x
-        lyx += wy[b] * slope_y
-        lyy += dy[b] * row_y
-    return lxx, lxy, lyx, lyy
-
-
-@inlined
-def scatter_momentum(values, i, wx, j, wy, momentum_x, momentum_y):
-    """Add a point's momentum to its nodes: sum over points of w m v."""
-    for b in range(len(wy)):
-        for a in range(len(wx)):
-            w = wy[b] * wx[a]
-            values[j + b, i + a, 0] += w * momentum_x
-            values[j + b, i + a, 1] += w * momentum_y
-
-
-@inlined
-def scatter_state(sums, i, wx, dx, j, wy, dy, mass, vx, vy, volume, stress):
-    """Add a point's mass, momentum and internal force -V sigma grad w to its nodes."""
-    for b in range(len(wy)):
-        row_mass = wy[b] * mass
-        along_xx, along_xy = -volume * stress.xx * wy[b], -volume * stress.xy * wy[b]
-        across_xy, across_yy = -volume * stress.xy * dy[b], -volume * stress.yy * dy[b]
-        for a in range(len(wx)):
-            m = wx[a] * row_mass
-            sums[j + b, i + a, MASS] += m
-            sums[j + b, i + a, MOMENTUM_X] += m * vx
-            sums[j + b, i + a, MOMENTUM_Y] += m * vy
-            sums[j + b, i + a, FORCE_X] += dx[a] * along_xx + wx[a] * across_xy
-            sums[j + b, i + a, FORCE_Y] += dx[a] * along_xy + wx[a] * across_yy
+from rfmpm.mpm.protocols import update_stress, weights
+from rfmpm.mpm.state import CHANGE_X, CHANGE_Y, X, Y
 
 
 @inlined
@@ -121,13 +49,23 @@ def deform(points, p, law, history, gradient, dt):
     )
 
 
+@inlined
+def add_to_nodes(grid, i, wx, dx, j, wy, dy, mass, vx, vy, volume, stress):
+    """Add a point's mass, momentum m v and internal force -V sigma grad w to its nodes."""
+    scatter_scalar(grid.mass, i, wx, j, wy, mass)
+    momentum = mass * vx, mass * vy, 0.0, 0.0
+    force_x = 0.0, 0.0, -volume * stress.xx, -volume * stress.xy
+    force_y = 0.0, 0.0, -volume * stress.xy, -volume * stress.yy
+    scatter_slopes(grid.sums, i, wx, dx, j, wy, dy, momentum, force_x, force_y)
+
+
 @kernel
 def carry_points(points, law, history, axes, grid, filtered, blend, straining, dt):
     """Carry the points through the grid in one pass: grid to point, stress, point to grid.
 
     One pass instead of three, because a point's data then cross the memory once a step. It reads the velocities of the
-    old positions from `grid.flow` and adds to `grid.sums`, which must be zero, at the new ones; with zero `flow` and
-    `dt` it only adds.
+    old positions from `grid.flow` and adds to `grid.mass` and `grid.sums`, which must be zero, at the new ones; with zero
+    `flow` and `dt` it only adds.
 
     `filtered`, where given, is the velocity towards which a fraction `blend` of the point's velocity goes (FMPM);
     `straining`, where given, the velocity that strains the points, whose own is then already up to date (MUSL).
@@ -136,37 +74,35 @@ def carry_points(points, law, history, axes, grid, filtered, blend, straining, d
     first and last node column and row touched, index of a point that left the grid or -1).
     """
     kinetic = fall = work = fastest = 0.0
-    i_first, i_last, j_first, j_last = grid.sums.shape[1], 0, grid.sums.shape[0], 0
+    i_first, i_last, j_first, j_last = grid.mass.shape[1], 0, grid.mass.shape[0], 0
     length, height = axes.x.cells / axes.x.inverse_cell, axes.y.cells / axes.y.inverse_cell
     for p in range(points.mass.size):
         x, y, mass = points.position.x[p], points.position.y[p], points.mass[p]
         vx, vy = points.velocity.x[p], points.velocity.y[p]
         i, wx, dx = weights(axes.x, x)
         j, wy, dy = weights(axes.y, y)
-        move_x, move_y = gather_pair(grid.flow, i, wx, j, wy)
+        flow, slope_x, slope_y = gather_slopes(grid.flow, i, wx, dx, j, wy, dy)
         if straining is None:
-            gradient = gather_gradient(grid.flow, i, wx, dx, j, wy, dy)
-            change_x, change_y = gather_change(grid.flow, i, wx, j, wy)
-            vx, vy = vx + change_x, vy + change_y
+            vx, vy = vx + flow[CHANGE_X], vy + flow[CHANGE_Y]
             if filtered is not None:
-                smooth_x, smooth_y = gather_pair(filtered, i, wx, j, wy)
-                vx, vy = vx + blend * (smooth_x - vx), vy + blend * (smooth_y - vy)
+                smooth = gather(filtered, i, wx, j, wy)
+                vx, vy = vx + blend * (smooth[X] - vx), vy + blend * (smooth[Y] - vy)
             points.velocity.x[p], points.velocity.y[p] = vx, vy
         else:
-            gradient = gather_gradient(straining, i, wx, dx, j, wy, dy)
-        x, y = x + dt * move_x, y + dt * move_y
+            _, slope_x, slope_y = gather_slopes(straining, i, wx, dx, j, wy, dy)
+        x, y = x + dt * flow[X], y + dt * flow[Y]
         if not (0.0 <= x <= length and 0.0 <= y <= height):
             return kinetic, fall, work, inf, i_first, i_last, j_first, j_last, p
         points.position.x[p], points.position.y[p] = x, y
-        work += deform(points, p, law, history, gradient, dt)
+        work += deform(points, p, law, history, (slope_x[X], slope_y[X], slope_x[Y], slope_y[Y]), dt)
         i, wx, dx = weights(axes.x, x)
         j, wy, dy = weights(axes.y, y)
-        scatter_state(grid.sums, i, wx, dx, j, wy, dy, mass, vx, vy, points.volume[p], at(points.stress, p))
+        add_to_nodes(grid, i, wx, dx, j, wy, dy, mass, vx, vy, points.volume[p], at(points.stress, p))
         i_first, i_last = min(i_first, i), max(i_last, i + len(wx) - 1)
         j_first, j_last = min(j_first, j), max(j_last, j + len(wy) - 1)
         speed = vx * vx + vy * vy
         kinetic += 0.5 * mass * speed
-        fall -= mass * dt * move_y
+        fall -= mass * dt * flow[Y]
         fastest = max(fastest, speed)
     return kinetic, fall, work, fastest, i_first, i_last, j_first, j_last, -1
 
@@ -177,20 +113,20 @@ def project_twice(points, axes, grid):
     for p in range(points.mass.size):
         i, wx, _ = weights(axes.x, points.position.x[p])
         j, wy, _ = weights(axes.y, points.position.y[p])
-        vx, vy = gather_pair(grid.flow, i, wx, j, wy)
-        scatter_momentum(grid.filtered, i, wx, j, wy, points.mass[p] * vx, points.mass[p] * vy)
+        flow, m = gather(grid.flow, i, wx, j, wy), points.mass[p]
+        scatter(grid.filtered, i, wx, j, wy, (m * flow[X], m * flow[Y], 0.0, 0.0))
 
 
 @kernel
-def update_velocities(points, axes, grid, filtered, blend, momentum):
-    """Update the points' velocities and add their momentum to `momentum` at the old positions (MUSL, first half)."""
+def update_velocities(points, axes, grid, filtered, blend):
+    """Update the points' velocities and add their momentum to `grid.straining` at the old positions (MUSL)."""
     for p in range(points.mass.size):
         i, wx, _ = weights(axes.x, points.position.x[p])
         j, wy, _ = weights(axes.y, points.position.y[p])
-        change_x, change_y = gather_change(grid.flow, i, wx, j, wy)
-        vx, vy = points.velocity.x[p] + change_x, points.velocity.y[p] + change_y
+        flow, m = gather(grid.flow, i, wx, j, wy), points.mass[p]
+        vx, vy = points.velocity.x[p] + flow[CHANGE_X], points.velocity.y[p] + flow[CHANGE_Y]
         if filtered is not None:
-            smooth_x, smooth_y = gather_pair(filtered, i, wx, j, wy)
-            vx, vy = vx + blend * (smooth_x - vx), vy + blend * (smooth_y - vy)
+            smooth = gather(filtered, i, wx, j, wy)
+            vx, vy = vx + blend * (smooth[X] - vx), vy + blend * (smooth[Y] - vy)
         points.velocity.x[p], points.velocity.y[p] = vx, vy
-        scatter_momentum(momentum, i, wx, j, wy, points.mass[p] * vx, points.mass[p] * vy)
+        scatter(grid.straining, i, wx, j, wy, (m * vx, m * vy, 0.0, 0.0))

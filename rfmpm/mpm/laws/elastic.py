@@ -17,6 +17,12 @@ def hooke(lame, shear, stress, strain_increment):
     )
 
 
+def lame_constants(youngs_modulus: float, poissons_ratio: float) -> tuple[float, float]:
+    """First Lame parameter and shear modulus [Pa] of Young's modulus [Pa] and Poisson's ratio [-]."""
+    lame = youngs_modulus * poissons_ratio / ((1.0 + poissons_ratio) * (1.0 - 2.0 * poissons_ratio))
+    return lame, 0.5 * youngs_modulus / (1.0 + poissons_ratio)
+
+
 class Elastic(NamedTuple):
     """Hooke's law; needs no history."""
 
@@ -26,3 +32,8 @@ class Elastic(NamedTuple):
     def update_stress(self, stress, strain_increment, history):
         """Hooke's law in rate form."""
         return hooke(self.lame, self.shear, stress, strain_increment), history
+
+    @classmethod
+    def build(cls, material, cell, count, cohesion):
+        """Make the law and its history from a study's material; arguments as for `VonMises.build`."""
+        return cls(*lame_constants(material.youngs_modulus_kpa * 1e3, material.poissons_ratio)), None

@@ -46,6 +46,7 @@ def step(now, points, law, history, axes, grid, walls, controls):
         project_twice(points, axes, grid)
         subtract_second_projection(grid, box)
     if controls.second_mapping is None:
+        clear(grid.mass, box)
         clear(grid.sums, box)
         if filtering:
             moved = carry_points(points, law, history, axes, grid, grid.filtered, blend, None, dt)
@@ -54,10 +55,11 @@ def step(now, points, law, history, axes, grid, walls, controls):
     else:
         clear(grid.straining, box)
         if filtering:
-            update_velocities(points, axes, grid, grid.filtered, blend, grid.straining)
+            update_velocities(points, axes, grid, grid.filtered, blend)
         else:
-            update_velocities(points, axes, grid, None, blend, grid.straining)
-        divide_straining(grid, walls, box)
+            update_velocities(points, axes, grid, None, blend)
+        gain += divide_straining(grid, box, dt)
+        clear(grid.mass, box)
         clear(grid.sums, box)
         moved = carry_points(points, law, history, axes, grid, None, blend, grid.straining, dt)
     kinetic, fall, work, fastest, first_column, last_column, first_row, last_row, culprit = moved
@@ -83,7 +85,7 @@ def judge(now, points, controls):
         status = LEFT_GRID if abs(gone) < inf else NOT_A_NUMBER
     elif not now.kinetic < inf:
         status = NOT_A_NUMBER
-    elif spent - now.gravity_work > controls.energy_scale + controls.growth_limit * scale:
+    elif spent - now.gravity_work > controls.growth_limit * scale:
         status = ENERGY_GREW
     elif now.quiet_time >= controls.rest_time:
         status = AT_REST

@@ -2,17 +2,7 @@
 
 from rfmpm.kernel_tools import kernel
 from rfmpm.mpm.protocols import constrain
-from rfmpm.mpm.state import (
-    CHANGE_X,
-    CHANGE_Y,
-    FORCE_X,
-    FORCE_Y,
-    MASS,
-    MOMENTUM_X,
-    MOMENTUM_Y,
-    VELOCITY_X,
-    VELOCITY_Y,
-)
+from rfmpm.mpm.state import CHANGE_X, CHANGE_Y, FORCE_X, FORCE_Y, X, Y
 
 
 @kernel
@@ -39,21 +29,22 @@ def update_grid(grid, walls, box, gravity, dt):
     Returns (gain of kinetic energy, work taken by the walls), both [J/m].
     """
     gain = friction = 0.0
-    last_column = grid.sums.shape[1] - 1
+    last_column = grid.mass.shape[1] - 1
     for row in range(box[2], box[3] + 1):
         for column in range(box[0], box[1] + 1):
-            m = grid.sums[row, column, MASS]
+            m = grid.mass[row, column]
             old_x = old_y = vx = vy = 0.0
             if m > 0.0:
-                old_x, old_y = grid.sums[row, column, MOMENTUM_X] / m, grid.sums[row, column, MOMENTUM_Y] / m
-                push_x = dt * grid.sums[row, column, FORCE_X] / m
-                push_y = dt * (grid.sums[row, column, FORCE_Y] / m - gravity)
+                inverse = 1.0 / m
+                old_x, old_y = grid.sums[row, column, X] * inverse, grid.sums[row, column, Y] * inverse
+                push_x = dt * grid.sums[row, column, FORCE_X] * inverse
+                push_y = dt * (grid.sums[row, column, FORCE_Y] * inverse - gravity)
                 vx, vy = old_x + push_x, old_y + push_y
                 if row == 0 or column == 0 or column == last_column:
                     old_x, old_y, vx, vy = apply_walls(walls, old_x, old_y, push_x, push_y, row, column, last_column)
                     friction += 0.5 * m * ((old_x + push_x - vx) * (old_x + vx) + (old_y + push_y - vy) * (old_y + vy))
                 gain += 0.5 * m * (vx * vx + vy * vy - old_x * old_x - old_y * old_y)
-            grid.flow[row, column, VELOCITY_X], grid.flow[row, column, VELOCITY_Y] = vx, vy
+            grid.flow[row, column, X], grid.flow[row, column, Y] = vx, vy
             grid.flow[row, column, CHANGE_X], grid.flow[row, column, CHANGE_Y] = vx - old_x, vy - old_y
     return gain, friction
 
@@ -65,10 +56,10 @@ def subtract_second_projection(grid, box):
     v = 2 v+ - S+ S v+ (Nairn and Hammerquist 2021, eq. 27 with two terms); a wall's own nodes keep v+, which meets the
     wall's condition.
     """
-    last_column = grid.sums.shape[1] - 1
+    last_column = grid.mass.shape[1] - 1
     for row in range(box[2], box[3] + 1):
         for column in range(box[0], box[1] + 1):
-            m = grid.sums[row, column, MASS]
+            m = grid.mass[row, column]
             on_wall = row == 0 or column == 0 or column == last_column
             for k in range(2):
                 v = grid.flow[row, column, k]
@@ -78,23 +69,26 @@ def subtract_second_projection(grid, box):
 
 
 @kernel
-def divide_straining(grid, walls, box):
-    """Turn `grid.straining` from the momentum of the updated points into a velocity that meets the walls."""
-    last_column = grid.sums.shape[1] - 1
+def divide_straining(grid, box, dt):
+    """Turn `grid.straining` from the momentum of the updated points into a velocity; what a wall holds stays held.
+
+    Returns the work [J/m] that the internal forces do on the difference between it and the grid's velocity in mid-step.
+    """
+    difference = 0.0
     for row in range(box[2], box[3] + 1):
         for column in range(box[0], box[1] + 1):
-            m = grid.sums[row, column, MASS]
-            if m <= 0.0:
-                continue
-            vx, vy = grid.straining[row, column, 0] / m, grid.straining[row, column, 1] / m
-            _, _, vx, vy = apply_walls(walls, vx, vy, 0.0, 0.0, row, column, last_column)
-            grid.straining[row, column, 0], grid.straining[row, column, 1] = vx, vy
+            m = grid.mass[row, column]
+            for k in range(2):
+                v = 0.0
+                if m > 0.0 and grid.flow[row, column, k] != 0.0:
+                    v = grid.straining[row, column, k] / m
+                    middle = grid.flow[row, column, k] - 0.5 * grid.flow[row, column, CHANGE_X + k]
+                    difference += dt * grid.sums[row, column, FORCE_X + k] * (v - middle)
+                grid.straining[row, column, k] = v
+    return difference
 
 
 @kernel
 def clear(values, box):
-    """Set the touched nodes of an array (rows, columns, k) to zero."""
-    for row in range(box[2], box[3] + 1):
-        for column in range(box[0], box[1] + 1):
-            for k in range(values.shape[2]):
-                values[row, column, k] = 0.0
+    """Set the touched nodes of an array (rows, columns, ...) to zero."""
+    values[box[2] : box[3] + 1, box[0] : box[1] + 1] = 0.0

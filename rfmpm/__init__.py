@@ -1,0 +1,124 @@
+"""Monte Carlo ensembles of slope failures: random fields of strength, the material point method, probabilities.
+
+The names below are the public ones; each loads what it needs when it is first used.
+"""
+
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray as xr
+
+    from rfmpm.realisation import Outcome
+    from rfmpm.results import open_ensemble
+    from rfmpm.study import Study, StudyError, load_study
+
+__all__ = [
+    "Study",
+    "StudyError",
+    "__version__",
+    "load_study",
+    "open_ensemble",
+    "realise_fields",
+    "run_ensemble",
+    "simulate",
+]
+
+_HOMES = {
+    "Study": "rfmpm.study",
+    "StudyError": "rfmpm.study",
+    "load_study": "rfmpm.study",
+    "open_ensemble": "rfmpm.results",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("rfmpm")
+    if name in _HOMES:
+        return getattr(import_module(_HOMES[name]), name)
+    raise AttributeError(f"module 'rfmpm' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
+def realise_fields(study: Any, index: int = 0, level: int = 0) -> "dict[str, np.ndarray]":
+    """Realise the random fields of one realisation.
+
+    Args:
+        study: a Study, or anything `load_study` reads.
+        index: realisation index.
+        level: level of a multilevel plan; 0 for plain Monte Carlo.
+
+    Returns:
+        Values at the material points by name: {"cohesion": (n_points,) [Pa]}; empty for a homogeneous study.
+
+    Raises:
+        StudyError: with everything that is wrong with the study.
+    """
+    from rfmpm import realisation
+    from rfmpm.study import load_study
+
+    return realisation.realise_fields(load_study(study), index, level=level)
+
+
+def simulate(study: Any, index: int = 0, *, level: int = 0, frames: int = 0, homogeneous: bool = False) -> "Outcome":
+    """Simulate one realisation.
+
+    Args:
+        study: a Study, or anything `load_study` reads.
+        index: realisation index.
+        level: level of a multilevel plan; 0 for plain Monte Carlo.
+        frames: number of snapshots to keep on the way.
+        homogeneous: take the mean strength everywhere.
+
+    Returns:
+        The outcome: quantities, status, final points, histories and snapshots.
+
+    Raises:
+        StudyError: with everything that is wrong with the study.
+    """
+    from rfmpm import realisation
+    from rfmpm.study import load_study
+
+    prepared = realisation.prepare(load_study(study))
+    return realisation.simulate(prepared, index, level=level, frames=frames, homogeneous=homogeneous)
+
+
+def run_ensemble(
+    study: Any,
+    realisations: int | None = None,
+    directory: str | Path | None = None,
+    *,
+    workers: int | None = None,
+    fresh: bool = False,
+) -> "xr.Dataset":
+    """Run a campaign, continuing what its folder holds of the same study.
+
+    Args:
+        study: a Study, or anything `load_study` reads.
+        realisations: how many, instead of the study's own number.
+        directory: folder of the results, instead of the study's own.
+        workers: number of local processes; by default one for each core.
+        fresh: start anew instead of continuing.
+
+    Returns:
+        One row for each realisation, with units and definitions; None on all ranks of an MPI run but the first.
+
+    Raises:
+        StudyError: with everything that is wrong with the study.
+    """
+    from rfmpm import ensemble
+    from rfmpm.study import load_study
+
+    study = load_study(study)
+    if realisations is not None:
+        study = study.with_changes({"study.realisations": realisations})
+    folder = Path(study.output.directory if directory is None else directory)
+    return ensemble.run(study, folder, realisations=study.study.realisations, workers=workers, fresh=fresh)

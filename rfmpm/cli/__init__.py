@@ -1,0 +1,215 @@
+"""The command line: each command loads what it needs, does one thing and says where the result is."""
+
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY, end, ends_in_words
+from rfmpm.cli.tables import cost_row, outcome_rows, print_table
+
+FRAMES_OF_AN_ANIMATION = 60
+
+app = typer.Typer(
+    help="Probability of run-out, failure volume and retrogression of a slope.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+
+StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
+OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.")]
+Index = Annotated[int, typer.Option("--index", min=0, metavar="I", help="Which realisation.")]
+
+
+def main() -> None:
+    """Run the command line."""
+    app(prog_name="rfmpm")
+
+
+def command(function: Callable[..., None]) -> Callable[..., None]:
+    """Make a function a command of its name."""
+    return app.command(function.__name__)(ends_in_words(function))
+
+
+def _writable(folder: Path) -> Path:
+    """Make a folder, and fail now rather than after the computation if it cannot be written to."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryFile(dir=folder):
+        return folder
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        from rfmpm import __version__
+
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def rfmpm(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Probability of run-out, failure volume and retrogression of a slope."""
+
+
+@command
+def run(
+    study: StudyFile,
+    out: OutFolder = None,
+    realisations: Annotated[int | None, typer.Option(metavar="N", help="Instead of the study's number.")] = None,
+    seed: Annotated[int | None, typer.Option(metavar="S", help="Instead of the study's seed.")] = None,
+    workers: Annotated[int | None, typer.Option(min=1, metavar="N", help="Local processes; default: cores.")] = None,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Start anew instead of continuing.")] = False,
+    allow_failed: Annotated[
+        float, typer.Option(min=0.0, max=1.0, metavar="SHARE", help="Failed realisations beyond this share: exit 3.")
+    ] = 0.05,
+) -> None:
+    """Run the campaign, or continue what the folder holds of the same study."""
+    from rfmpm.study import load_study
+
+    given = {"study.realisations": realisations, "study.seed": seed}
+    settings = load_study(study).with_changes({path: value for path, value in given.items() if value is not None})
+    folder = out or Path(settings.output.directory)
+    dataset = _campaign(settings, folder, workers, fresh)
+    if dataset is None:
+        return  # another rank than the first
+    from rfmpm import report as reporting
+
+    typer.echo(f"dataset: {folder / 'ensemble.nc'}")
+    typer.echo(f"report:  {reporting.write(folder)}")
+    for line in reporting.summary_lines(dataset, settings):
+        typer.echo(line)
+    _end_if_too_many_failed(dataset, allow_failed)
+
+
+def _campaign(settings: Any, folder: Path, workers: int | None, fresh: bool) -> Any:
+    from rfmpm import ensemble
+    from rfmpm.ensemble.mpi import launched_ranks
+
+    if workers is not None and (launched_ranks() or 1) > 1:
+        end("--workers: the ranks of mpirun are the workers; leave the option out", WRONG_STUDY)
+    try:
+        return ensemble.run(settings, folder, realisations=settings.study.realisations, workers=workers, fresh=fresh)
+    except (ensemble.FolderMismatch, ensemble.LauncherMismatch) as error:
+        end(str(error), WRONG_STUDY)
+    except ensemble.Interrupted as error:
+        end(str(error), STOPPED_EARLY)
+
+
+def _end_if_too_many_failed(dataset: Any, allowed: float) -> None:
+    from rfmpm.variables import FAILED, STATUS
+
+    failed = int(dataset["status"].isin([STATUS[name] for name in FAILED]).sum())
+    total = dataset.sizes["realisation"]
+    if failed > allowed * total:
+        end(f"{failed} of {total} realisations failed, more than the allowed {allowed:.3g} of them", TOO_MANY_FAILED)
+
+
+@command
+def simulate(
+    study: StudyFile,
+    index: Index = 0,
+    homogeneous: Annotated[bool, typer.Option("--homogeneous", help="Mean strength everywhere.")] = False,
+    out: OutFolder = None,
+    frames: Annotated[int, typer.Option(min=0, metavar="N", help="Snapshots to keep on the way.")] = 0,
+    animate: Annotated[bool, typer.Option("--animate", help="Write an animation (60 frames unless given).")] = False,
+) -> None:
+    """Simulate one realisation: snapshots, picture, animation."""
+    from rfmpm.study import load_study
+
+    settings = load_study(study)
+    name = "simulation_homogeneous" if homogeneous else f"simulation_{index}"
+    folder = _writable(out or Path(settings.output.directory) / name)
+    from rfmpm import realisation, report, results
+
+    frames = frames or (FRAMES_OF_AN_ANIMATION if animate else 0)
+    prepared = realisation.prepare(settings)
+    outcome = realisation.simulate(prepared, index, frames=frames, homogeneous=homogeneous)
+    written = [folder / "simulation.nc", folder / "simulation.png"]
+    results.write_simulation(written[0], outcome, settings)
+    report.write_simulation_picture(outcome, settings, written[1])
+    if animate:
+        written.append(folder / "simulation.gif")
+        report.write_animation(outcome, settings, written[2])
+    print_table(outcome_rows(outcome))
+    for path in written:
+        typer.echo(path)
+    from rfmpm.variables import FAILED
+
+    if outcome.status in FAILED:
+        end(f"the realisation failed: {outcome.status}, {outcome.reason}", TOO_MANY_FAILED)
+
+
+@command
+def field(study: StudyFile, index: Index = 0, out: OutFolder = None) -> None:
+    """Realise the random field alone: picture, sample statistics against the asked ones."""
+    from rfmpm.study import StudyError, load_study
+
+    settings = load_study(study)
+    if not settings.random_field:
+        raise StudyError(["random_field: this study has none; its strength is the same everywhere"], str(study))
+    folder = _writable(out or Path(settings.output.directory) / f"field_{index}")
+    from rfmpm import report
+
+    for line in report.write_field(settings, index, folder):
+        typer.echo(line)
+    typer.echo(folder / "field.png")
+
+
+@command
+def check(
+    study: Annotated[Path | None, typer.Argument(metavar="STUDY", help="Study file (TOML).")] = None,
+    schema: Annotated[bool, typer.Option("--schema", help="Print the JSON schema of study files.")] = False,
+) -> None:
+    """Validate a study: everything that is wrong with it at once."""
+    from rfmpm.study import Study, load_study
+
+    if schema:
+        import json
+
+        typer.echo(json.dumps(Study.json_schema(), indent=2))
+    elif study is None:
+        raise typer.BadParameter("give a study file, or --schema", param_hint="STUDY")
+    if study is not None:
+        load_study(study)
+        typer.echo(f"{study}: nothing is wrong", err=schema)
+
+
+@command
+def estimate(study: StudyFile) -> None:
+    """Say what a campaign would cost, from a short trial; run nothing else."""
+    from rfmpm.study import load_study
+
+    settings = load_study(study)
+    from rfmpm import realisation
+
+    print_table(cost_row(key, value) for key, value in realisation.estimate_cost(settings).items())
+
+
+@command
+def report(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a campaign.")],
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="Instead of DIR/report.html.")] = None,
+) -> None:
+    """Write report.html (one self-contained file) and report.json."""
+    if not (directory / "ensemble.nc").is_file():
+        end(f"{directory}: no ensemble.nc here; has the campaign been completed?", WRONG_STUDY)
+    from rfmpm import report as reporting
+
+    typer.echo(reporting.write(directory, out))
+
+
+@command
+def warmup() -> None:
+    """Compile and cache every kernel."""
+    from rfmpm import realisation
+
+    realisation.warmup()
+    typer.echo("every kernel is compiled and cached")

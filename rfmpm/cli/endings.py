@@ -1,0 +1,47 @@
+"""How a command ends when it cannot do what it was asked: one message on standard error, one exit code."""
+
+import os
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, NoReturn
+
+import typer
+
+WRONG_STUDY, TOO_MANY_FAILED, STOPPED_EARLY = 2, 3, 75
+RANK_VARIABLES = ("PMI_RANK", "PMIX_RANK", "OMPI_COMM_WORLD_RANK")
+
+
+def ends_in_words(function: Callable[..., None]) -> Callable[..., None]:
+    """Let the expected failures of a command end in one message and an exit code instead of a traceback."""
+
+    @wraps(function)
+    def guarded(*args: Any, **kwargs: Any) -> None:
+        try:
+            function(*args, **kwargs)
+        except KeyboardInterrupt:
+            end("stopped early", STOPPED_EARLY)
+        except OSError as error:
+            end(f"{error.filename}: {error.strerror}" if error.filename else str(error), WRONG_STUDY)
+        except _refusals() as error:
+            end(str(error), WRONG_STUDY)
+
+    return guarded
+
+
+def _refusals() -> type[Exception]:
+    # Evaluated only once something is raised: `rfmpm --help` need not load the study.
+    from rfmpm.study import StudyError
+
+    return StudyError
+
+
+def end(message: str, code: int) -> NoReturn:
+    """Say why, and leave with an exit code."""
+    if _is_first_rank():
+        typer.echo(f"rfmpm: {message}", err=True)
+    raise typer.Exit(code)
+
+
+def _is_first_rank() -> bool:
+    """Whether this process speaks for all: told from the launcher, so that no command needs MPI to say so."""
+    return all(os.environ.get(name, "0") == "0" for name in RANK_VARIABLES)

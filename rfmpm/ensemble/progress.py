@@ -1,0 +1,89 @@
+"""How far a campaign is: a bar on a terminal, now and then a line elsewhere; on standard error."""
+
+import sys
+import time
+from datetime import timedelta
+
+LINE_EVERY = 10.0  # seconds
+
+
+class Progress:
+    """Shows finished and failed realisations, their rate and the time left.
+
+    The clock starts when its context is entered; the display appears at the first `show`.
+
+    Args:
+        total: realisations of the campaign.
+        before: how many of them an earlier run finished.
+        is_shown: False for silence.
+    """
+
+    def __init__(self, total: int, before: int, is_shown: bool = True):
+        self.total, self.before, self.is_shown = total, before, is_shown
+        self.started = self.last_line = time.monotonic()
+        self.is_complete = False
+        self.bar = None
+
+    def __enter__(self) -> "Progress":
+        self.started = self.last_line = time.monotonic()
+        return self
+
+    def __exit__(self, *_) -> None:
+        if self.bar is not None:
+            self.bar.stop()
+
+    def show(self, done: int, failed: int) -> None:
+        """Bring the display up to date.
+
+        Args:
+            done: realisations finished in this run.
+            failed: how many of those failed.
+        """
+        if not self.is_shown or self.is_complete:
+            return
+        self.is_complete = self.before + done == self.total
+        if sys.stderr.isatty():
+            self._show_bar(done, failed)
+        elif self.is_complete or time.monotonic() - self.last_line >= LINE_EVERY:
+            self.last_line = time.monotonic()
+            print(self.line(done, failed), file=sys.stderr, flush=True)
+
+    def line(self, done: int, failed: int) -> str:
+        """Write the state as one line; arguments as for `show`."""
+        left = self.seconds_left(done)
+        time_left = "time left unknown" if left is None else f"{timedelta(seconds=round(left))} left"
+        return f"{self.before + done}/{self.total} realisations, {self._rate(done)}, {time_left}, {failed} failed"
+
+    def seconds_left(self, done: int) -> float | None:
+        """Estimate the time left from the rate of this run.
+
+        Args:
+            done: realisations finished in this run.
+
+        Returns:
+            Seconds, or None before the first one is finished.
+        """
+        if not done:
+            return None
+        return (self.total - self.before - done) * (time.monotonic() - self.started) / done
+
+    def _rate(self, done: int) -> str:
+        per_minute = 60.0 * done / max(time.monotonic() - self.started, 1e-9)
+        return f"{per_minute:.3g} per minute"
+
+    def _show_bar(self, done: int, failed: int) -> None:
+        if self.bar is None:
+            from rich import progress
+            from rich.console import Console
+
+            self.bar = progress.Progress(
+                progress.BarColumn(),
+                progress.MofNCompleteColumn(),
+                progress.TextColumn("{task.fields[remark]}"),
+                console=Console(stderr=True),
+                refresh_per_second=2,
+            )
+            self.bar.add_task("realisations", total=self.total, remark="")
+            self.bar.start()
+        remark = self.line(done, failed).split(", ", 1)[1]
+        self.bar.update(self.bar.task_ids[0], completed=self.before + done, remark=remark)

@@ -1,0 +1,141 @@
+"""Carries out a campaign: takes the folder, runs what is missing, merges the segments into the one dataset."""
+
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rfmpm import results
+from rfmpm.ensemble import folder, segments
+from rfmpm.ensemble.dispatcher import Dispatcher
+from rfmpm.ensemble.mpi import Ranks, launched_ranks
+from rfmpm.ensemble.processes import Processes
+from rfmpm.ensemble.progress import Progress
+from rfmpm.ensemble.worker import Abandoned, Worker
+from rfmpm.estimators.monte_carlo import MonteCarlo
+from rfmpm.variables import failed_row
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FATAL_STARTS = 3  # a realisation that took so many workers with it is given up
+
+
+class Interrupted(RuntimeError):
+    """A campaign that ended early; what is finished is on disk and the same command continues it."""
+
+
+def run(
+    study,
+    directory: Path | str,
+    realisations: int | None = None,
+    workers: int | None = None,
+    fresh: bool = False,
+    progress: bool = True,
+) -> "xr.Dataset | None":
+    """Run a campaign, or what is missing of it, and gather its rows in ensemble.nc.
+
+    Under an MPI launcher every rank calls this and works; otherwise local processes do.
+
+    Args:
+        study: the study.
+        directory: folder of the results; continued if it holds results of the same study.
+        realisations: how many; the study's number if None.
+        workers: local processes; as many as there are processors if None.
+        fresh: discard the results the folder holds.
+        progress: show progress on standard error.
+
+    Returns:
+        The first `realisations` rows; None on every MPI rank but 0.
+
+    Raises:
+        FolderMismatch: if the folder cannot take this campaign; nothing in it was changed.
+        LauncherMismatch: if mpirun and the MPI library do not belong together.
+        Interrupted: if it ended early, by a signal or because workers were lost.
+        ValueError: for less than one realisation or worker, or for workers under several MPI ranks.
+    """
+    if realisations is not None:
+        study = study.with_changes({"study.realisations": realisations})
+    crew, worker = _crew(workers), Worker(study, Path(directory))
+    if crew.rank > 0:
+        crew.follow(worker)
+        return None
+    try:
+        with worker.stop.listening(), folder.opened(worker.directory, study, fresh) as journal:
+            return _campaign(crew, worker, journal, fresh, progress)
+    finally:
+        crew.close()
+
+
+def _crew(workers: int | None) -> Processes | Ranks:
+    ranks = launched_ranks()
+    if ranks is None or (ranks == 1 and workers is not None):
+        return Processes(workers)
+    if workers is not None:
+        raise ValueError(f"workers = {workers}: under mpirun the {ranks} ranks are the workers; leave it out")
+    return Ranks()
+
+
+def _campaign(crew: Processes | Ranks, worker: Worker, journal, fresh: bool, is_shown: bool) -> "xr.Dataset":
+    study, directory = worker.study, worker.directory
+    total = study.study.realisations
+    rows = segments.read_all(directory, study, journal)
+    todo = MonteCarlo(total).plan(rows)
+    journal.write("start", fresh=fresh, realisations=total, todo=len(todo), workers=crew.size, **_origin(study))
+    todo = _give_up(todo, worker, journal)
+    losses = []
+    if todo:
+        losses = _carry_out(crew, worker, journal, todo, Progress(total, total - len(todo), is_shown))
+    rows = segments.read_all(directory, study, journal)
+    missing = MonteCarlo(total).plan(rows)
+    if missing:
+        journal.write("stop", complete=False, missing=len(missing))
+        raise Interrupted(_what_is_left(total, missing, losses))
+    return _finish(study, directory, [rows[index] for index in range(total)], journal)
+
+
+def _origin(study) -> dict[str, str]:
+    return {"physics_hash": study.physics_hash, "source_hash": results.source_hash(), **results.versions()}
+
+
+def _give_up(todo: list[int], worker: Worker, journal) -> list[int]:
+    """Write rows with status lost for realisations that kill their workers; returns the others."""
+    fatal = {index for index, count in journal.fatal_starts().items() if count >= FATAL_STARTS}
+    writer = segments.SegmentWriter(worker.directory, worker.study, 0)
+    reason = f"{FATAL_STARTS} workers died in this realisation"
+    written = []
+    for index in sorted(fatal.intersection(todo)):
+        written += writer.add(failed_row(worker.study, index, "lost", reason))
+    for segment in written + writer.flush():
+        journal.write("segment", rank=0, **segment)
+    return [index for index in todo if index not in fatal]
+
+
+def _carry_out(crew: Processes | Ranks, worker: Worker, journal, todo: list[int], progress: Progress) -> list[str]:
+    from threadpoolctl import threadpool_limits
+
+    try:
+        with threadpool_limits(limits=1):
+            worker.prepare()
+    except Abandoned:
+        return ["a signal asked for the end"]
+    with progress:
+        dispatcher = Dispatcher(todo, journal, progress)
+        crew.lead(worker, dispatcher)
+    return [*dispatcher.losses, *(["a signal asked for the end"] if worker.stop.is_requested else [])]
+
+
+def _what_is_left(total: int, missing: list[int], losses: list[str]) -> str:
+    reasons = "".join(f"\n  {loss}" for loss in losses)
+    return (
+        f"stopped early with {total - len(missing)} of {total} realisations; "
+        f"run the same command again to continue{reasons}"
+    )
+
+
+def _finish(study, directory: Path, rows: list[segments.Row], journal) -> "xr.Dataset":
+    path = directory / results.ENSEMBLE_FILE
+    merged = results.dataset(rows, study, {"start": journal.started(), "end": folder.now()})
+    results.write_dataset(path, merged)
+    shutil.rmtree(directory / folder.WORK, ignore_errors=True)
+    journal.write("stop", complete=True, content_hash=merged.attrs["content_hash"])
+    return results.open_ensemble(path)

@@ -1,0 +1,120 @@
+"""A scene: everything that realisations of one study share, and what one of them starts from."""
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from rfmpm.kernel_tools import Vector
+from rfmpm.mpm.boundary import WALLS, Walls
+from rfmpm.mpm.energy import elastic_energy
+from rfmpm.mpm.geometry import Body, body, fill
+from rfmpm.mpm.initial_stress import elastic_gravity_stress
+from rfmpm.mpm.laws import LAWS
+from rfmpm.mpm.laws.elastic import lame_constants
+from rfmpm.mpm.shapes import SHAPES
+from rfmpm.mpm.solvers import Controls
+from rfmpm.mpm.state import Axes, Grid, Points, copy_points
+
+GRAVITY = 9.81  # [m/s2]
+
+FILTER_INTERVAL = 4  # steps; the filter acts at a rate, so this only spreads its cost
+REST_FRACTION, REST_TIME = 1e-3, 1.0
+GROWTH_LIMIT = 0.05
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A body of points at rest in its grid; realisations copy the points."""
+
+    body: Body
+    cell: float  # [m]
+    points: Points
+    axes: Axes
+    walls: Walls
+    controls: Controls
+    material: object  # the study's material
+    lame: float  # [Pa]
+    shear: float  # [Pa]
+
+
+def build(study) -> Scene:
+    """Build the scene of a study.
+
+    Args:
+        study: the study.
+
+    Returns:
+        The scene, its points under elastic gravity stresses.
+    """
+    cell, material = study.discretisation.cell_m, study.material[0]
+    shape = body(study)
+    position, volume = fill(shape.outline, cell, study.discretisation.points_per_cell)
+    density = material.unit_weight_kn_m3 * 1e3 / GRAVITY
+    lame, shear = lame_constants(material.youngs_modulus_kpa * 1e3, material.poissons_ratio)
+    axis = SHAPES[study.discretisation.shape]
+    axes = Axes(*(axis(1.0 / cell, round(extent / cell)) for extent in (shape.length, shape.top)))
+    walls = Walls(_wall(study.boundary.base), _wall(study.boundary.sides))
+    mass = density * volume
+    stress = elastic_gravity_stress(position, mass, volume, axes, walls, lame, shear, GRAVITY)
+    still = Vector(np.zeros(len(volume)), np.zeros(len(volume)))
+    points = Points(Vector(*position.T.copy()), still, mass, volume, stress)
+    controls = Controls(
+        gravity=GRAVITY,
+        cell=cell,
+        wave_speed=sqrt((lame + 2.0 * shear) / density),
+        step_fraction=study.time.step_fraction,
+        dissipation_time=study.discretisation.dissipation_time_s,
+        filter_interval=FILTER_INTERVAL,
+        rest_fraction=REST_FRACTION,
+        rest_time=REST_TIME,
+        energy_scale=elastic_energy(points, lame, shear),
+        growth_limit=GROWTH_LIMIT,
+        second_mapping=True if study.discretisation.shape == "linear" else None,
+    )
+    return Scene(shape, cell, points, axes, walls, controls, material, lame, shear)
+
+
+def release(scene: Scene, cohesion: np.ndarray | None):
+    """Make what one realisation changes or owns.
+
+    Args:
+        scene: the scene.
+        cohesion: peak cohesion of each point, shape (n,) [Pa]; None for the material's own.
+
+    Returns:
+        Points, law, history and grid, for `solvers.advance`.
+    """
+    law, history = LAWS[scene.material.law].build(scene.material, scene.cell, len(scene.points.mass), cohesion)
+    return copy_points(scene.points), law, history, empty_grid(scene.axes)
+
+
+def empty_grid(axes: Axes) -> Grid:
+    """Make the nodes of a grid, all zero."""
+    rows, columns = axes.y.cells + 1, axes.x.cells + 1
+    return Grid(np.zeros((rows, columns)), *(np.zeros((rows, columns, 4)) for _ in range(4)))
+
+
+def outline(study) -> np.ndarray:
+    """Outline of the body before it moves: corners, shape (k, 2) [m]."""
+    return body(study).outline
+
+
+def toe_x(study) -> float:
+    """Coordinate of the toe before it moves [m]."""
+    return body(study).toe
+
+
+def crest_edge_x(study) -> float:
+    """Coordinate of the crest's edge before it moves [m]."""
+    return body(study).crest_edge
+
+
+def domain_size(study) -> tuple[float, float]:
+    """Length and height of the domain [m]."""
+    return body(study).length, body(study).top
+
+
+def _wall(boundary):
+    kind = WALLS[boundary.kind]
+    return kind(*(getattr(boundary, name) for name in kind._fields))

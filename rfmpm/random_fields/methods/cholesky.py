@@ -1,0 +1,98 @@
+"""Field by the Cholesky factor of the covariance between all points: exact on any set of up to about 5000 points."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rfmpm.kernel_tools.threads import single_blas_thread
+from rfmpm.random_fields.correlation import Anisotropy
+
+# Added to the unit diagonal, in this order, until the factor exists. Rounding leaves eigenvalues of about -1e-13 in
+# the matrix of a smooth correlation or of coincident points; one that needs more than the last is not a covariance.
+NUGGETS = (0.0, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10)
+ROWS_AT_ONCE = 64
+
+
+class CholeskyRecord(NamedTuple):
+    """The lower factor, shape (n, n), C order [-], and the nugget on the diagonal it was made from, shape () [-]."""
+
+    lower: np.ndarray
+    nugget: np.ndarray
+
+
+class Cholesky:
+    """Field L xi with L L^T = C + nugget I, C the correlation between the points."""
+
+    Record = CholeskyRecord
+
+    @staticmethod
+    def prepare(correlation: Anisotropy, points: np.ndarray) -> CholeskyRecord:
+        """Factor the correlation between the points, with the smallest nugget of `NUGGETS` that allows it.
+
+        Coincident points are allowed: their values differ by no more than about the square root of the nugget.
+
+        Args:
+            correlation: correlation of the standard-normal field.
+            points: positions, shape (n, 2) [m].
+
+        Returns:
+            the factor and its nugget; it takes n variables.
+
+        Raises:
+            ValueError: the matrix is not positive definite even with the largest nugget.
+        """
+        for nugget in NUGGETS:
+            lower = _lower_factor(correlation, points, nugget)
+            if lower is not None:
+                return CholeskyRecord(lower, np.array(nugget))
+        raise ValueError(
+            f"{correlation} is not positive definite on these {len(points)} points, even with a nugget of {NUGGETS[-1]}"
+        )
+
+    @staticmethod
+    def n_variables(record: CholeskyRecord) -> int:
+        """Number of points."""
+        return record.lower.shape[1]
+
+    @staticmethod
+    def transform(record: CholeskyRecord, xi: np.ndarray) -> np.ndarray:
+        """Standard-normal field L xi at the points, shape (n,) [-], from `xi`, shape (n,) [-]."""
+        with single_blas_thread():
+            return record.lower @ xi
+
+    @staticmethod
+    def is_intact(record: CholeskyRecord, points: np.ndarray) -> bool:
+        """Whether the factor has the shape, the order and the unit variances that these points ask for."""
+        lower, nugget = record
+        n = len(points)
+        if (lower.shape, nugget.shape) != ((n, n), ()) or not lower.flags.c_contiguous:
+            return False
+        if lower.dtype != np.float64 or nugget.dtype != np.float64:
+            return False
+        variance = np.einsum("ij,ij->i", lower, lower)
+        return bool(np.all(np.abs(variance - 1.0 - nugget) < n * 1e-14))
+
+
+def _lower_factor(correlation: Anisotropy, points: np.ndarray, nugget: float) -> np.ndarray | None:
+    import scipy.linalg  # late: commands that make no field do not pay for it
+
+    covariance = _lower_covariance(correlation, points, nugget)
+    try:
+        with single_blas_thread():
+            # The upper triangle of the transposed view, factored in place, is the lower factor in C order.
+            upper = scipy.linalg.cholesky(covariance.T, lower=False, overwrite_a=True, check_finite=False)
+    except scipy.linalg.LinAlgError:
+        return None
+    return np.ascontiguousarray(upper.T)
+
+
+def _lower_covariance(correlation: Anisotropy, points: np.ndarray, nugget: float) -> np.ndarray:
+    # Block rows up to the diagonal alone: the temporaries stay small and the factorisation reads nothing above it.
+    n = len(points)
+    covariance = np.empty((n, n))
+    for start in range(0, n, ROWS_AT_ONCE):
+        stop = min(start + ROWS_AT_ONCE, n)
+        lag = points[start:stop, None, :] - points[None, :stop, :]
+        covariance[start:stop, :stop] = correlation.rho(lag[..., 0], lag[..., 1])
+    covariance[np.diag_indices(n)] += nugget
+    return covariance

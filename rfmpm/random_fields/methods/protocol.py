@@ -1,0 +1,33 @@
+"""What a field method offers."""
+
+from typing import Any, Protocol
+
+import numpy as np
+
+from rfmpm.random_fields.correlation import Anisotropy
+
+
+class FieldMethod(Protocol):
+    """A field method: all it needs beside its record is `xi`, so any plan of `xi` can drive it.
+
+    Attributes:
+        Record: NamedTuple of arrays, made once for a correlation and a set of points.
+    """
+
+    Record: type[Any]
+
+    @staticmethod
+    def prepare(correlation: Anisotropy, points: np.ndarray) -> Any:
+        """Make the record for points, shape (n, 2) [m]."""
+
+    @staticmethod
+    def n_variables(record: Any) -> int:
+        """Length of the vector `xi` that the record takes."""
+
+    @staticmethod
+    def transform(record: Any, xi: np.ndarray) -> np.ndarray:
+        """Turn `xi`, shape (n_variables,) [-], into the standard-normal field at the points, shape (n,) [-]."""
+
+    @staticmethod
+    def is_intact(record: Any, points: np.ndarray) -> bool:
+        """Whether a record read from a file can be one for these points; false for a damaged or a foreign one."""

@@ -1,0 +1,273 @@
+"""One realisation: from (study, level, index) to one row; the only place where fields and mechanics meet."""
+
+import time
+from dataclasses import dataclass
+from math import isfinite, nan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rfmpm import seeds
+from rfmpm.mpm import scene as scenes
+from rfmpm.mpm.solvers import SOLVERS
+from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNING, Progress, start
+from rfmpm.quantities import QUANTITIES, FinalState, first_minimum, front
+from rfmpm.random_fields import field as random_field
+from rfmpm.variables import FAILED, STATUS, active_variables
+
+SAMPLE_INTERVAL = 0.1  # [s] of model time from one entry of the histories to the next
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """What realisations of one study share."""
+
+    study: Any
+    scene: scenes.Scene
+    fields: dict[str, random_field.PreparedField]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One simulated realisation; arrays over points have shape (n,)."""
+
+    quantities: dict[str, Any]
+    status: str
+    reason: str
+    step_count: int
+    wall_time: float  # [s]
+    points: dict[str, np.ndarray]
+    history: dict[str, np.ndarray]
+    frames: list[tuple[float, dict[str, np.ndarray]]]
+
+
+def prepare(study, store: Path | None = None) -> Prepared:
+    """Make what all realisations of a study share: the scene, its initial stresses, the factor of its fields.
+
+    Args:
+        study: the study.
+        store: folder in which the factor is kept for other processes; None keeps it in memory.
+
+    Returns:
+        The prepared study.
+
+    Raises:
+        OSError: if the store cannot be written.
+    """
+    scene = scenes.build(study)
+    positions = np.column_stack(scene.points.position)
+    means = {"cohesion": getattr(study.material[0], "cohesion_kpa", 0.0) * 1e3}
+    prepared = {
+        name: random_field.prepare(settings, means[name], positions, store)
+        for name, settings in study.random_field.items()
+    }
+    return Prepared(study, scene, prepared)
+
+
+def realise_fields(study, index: int, level: int = 0) -> dict[str, np.ndarray]:
+    """Make the random fields of one realisation alone.
+
+    Args:
+        study: the study.
+        index: of the realisation.
+        level: of the plan.
+
+    Returns:
+        Field by name, shape (n,) each, in SI units; empty for a homogeneous study.
+    """
+    return _fields(prepare(study), index, level, None)
+
+
+def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = None) -> dict[str, Any]:
+    """Simulate one realisation and make its row.
+
+    Args:
+        prepared: the prepared study.
+        index: of the realisation.
+        level: of the plan.
+        xi: standard-normal vector, shape (n_variables,); None draws it from the stream of (seed, level, index).
+
+    Returns:
+        Every active variable by name; a numerical failure is a status with a reason, and its quantities are NaN.
+    """
+    outcome = _simulate(prepared, _fields(prepared, index, level, xi), frames=0)
+    row = outcome.quantities | {
+        "realisation": index,
+        "level": level,
+        "status": STATUS[outcome.status],
+        "status_reason": outcome.reason,
+        "step_count": outcome.step_count,
+        "wall_time": outcome.wall_time,
+    }
+    return row
+
+
+def simulate(
+    prepared: Prepared, index: int = 0, level: int = 0, frames: int = 0, homogeneous: bool = False
+) -> Outcome:
+    """Simulate one realisation and keep its points, histories and, if asked, snapshots.
+
+    Args:
+        prepared: the prepared study.
+        index: of the realisation.
+        level: of the plan.
+        frames: snapshots, evenly spread over the time up to rest; 0 for none.
+        homogeneous: leave the random field out.
+
+    Returns:
+        The outcome.
+    """
+    return _simulate(prepared, {} if homogeneous else _fields(prepared, index, level, None), frames)
+
+
+def _fields(prepared: Prepared, index: int, level: int, xi: np.ndarray | None) -> dict[str, np.ndarray]:
+    """Realise every field from its own part of the vector `xi`."""
+    counts = [entry.n_variables for entry in prepared.fields.values()]
+    if xi is None:
+        xi = seeds.standard_normal(prepared.study.study.seed, level, index, sum(counts))
+    parts = np.split(xi, np.cumsum(counts)[:-1]) if counts else []
+    return {
+        name: random_field.realise(entry, part)
+        for (name, entry), part in zip(prepared.fields.items(), parts, strict=True)
+    }
+
+
+def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int) -> Outcome:
+    started = time.perf_counter()
+    study, scene = prepared.study, prepared.scene
+    points, law, past, grid = scenes.release(scene, fields.get("cohesion"))
+    observer = _Observer(scene, study, points, past, frames)
+    advance, now = SOLVERS[study.time.scheme], start()
+    while now.status == RUNNING and now.time < study.time.end_s:
+        until = min(observer.next_sample, study.time.end_s)
+        now = advance(now, until, points, law, past, scene.axes, grid, scene.walls, scene.controls)
+        observer.sample(now)
+    status, reason = _verdict(now, study)
+    final = observer.points()
+    final["cohesion"] = np.broadcast_to(getattr(law, "peak", nan), final["x"].shape)
+    quantities = _quantities(prepared, final, observer, now, status)
+    return Outcome(
+        quantities,
+        status,
+        reason,
+        now.step_count,
+        time.perf_counter() - started,
+        final,
+        {name: np.array(values) for name, values in observer.history.items()},
+        observer.kept_frames(),
+    )
+
+
+class _Observer:
+    """Looks at a run from time to time: histories, and snapshots if asked."""
+
+    def __init__(self, scene, study, points, past, frames):
+        self.scene, self.study, self.live, self.past, self.wanted = scene, study, points, past, frames
+        names = ("time", "kinetic_energy", "failed_volume") + (("front", "crest") if frames else ())
+        self.history = {name: [] for name in names}
+        self.frames = [(0.0, self.points())] if frames else []
+        self.next_sample = SAMPLE_INTERVAL
+
+    def points(self) -> dict[str, np.ndarray]:
+        """Copy the points' state, by the names of the table of variables."""
+        live, first = self.live, self.scene.points
+        strain = np.zeros_like(live.mass) if self.past is None else self.past.plastic_strain
+        state = {
+            "x": live.position.x,
+            "y": live.position.y,
+            "x_initial": first.position.x,
+            "y_initial": first.position.y,
+            "displacement_x": live.position.x - first.position.x,
+            "displacement_y": live.position.y - first.position.y,
+            "velocity_x": live.velocity.x,
+            "velocity_y": live.velocity.y,
+            **{f"stress_{name}": getattr(live.stress, name) for name in live.stress._fields},
+            "plastic_strain": strain,
+            "volume": live.volume,
+        }
+        return {name: values.copy() for name, values in state.items()}
+
+    def sample(self, now: Progress) -> None:
+        """Add an entry to the histories."""
+        live, body, first = self.live, self.scene.body, self.scene.points
+        moved = np.hypot(live.position.x - first.position.x, live.position.y - first.position.y)
+        failed = moved > self.study.quantities.displacement_threshold_m
+        self.history["time"].append(now.time)
+        self.history["kinetic_energy"].append(now.kinetic)
+        self.history["failed_volume"].append(float(first.volume[failed].sum()))
+        self.next_sample = now.time + SAMPLE_INTERVAL
+        if self.wanted:
+            state = _final_state(self.scene, self.study, self.points())
+            quantile = self.study.quantities.front_quantile
+            self.history["front"].append(
+                front(live.position.x[failed], first.volume[failed], quantile) if failed.any() else body.toe
+            )
+            self.history["crest"].append(body.crest_edge - QUANTITIES["retrogression_distance"](state))
+            self.frames.append((now.time, self.points()))
+
+    def kept_frames(self) -> list[tuple[float, dict[str, np.ndarray]]]:
+        """Choose the snapshots, evenly spread from the first to the last."""
+        if len(self.frames) <= self.wanted:
+            return self.frames
+        return [self.frames[i] for i in np.linspace(0, len(self.frames) - 1, self.wanted).round().astype(int)]
+
+
+def _verdict(now: Progress, study) -> tuple[str, str]:
+    """Status of a run that has ended, and its reason in words."""
+    speed = f"at {now.time:.3g} s; try a smaller time.step_fraction than {study.time.step_fraction:g}"
+    if now.status == AT_REST:
+        return "ok", ""
+    if now.status == LEFT_GRID:
+        return "left_grid", f"point {now.culprit} left the grid {speed}"
+    if now.status == NOT_A_NUMBER:
+        return "diverged", f"a value is not a number {speed}"
+    if now.status == ENERGY_GREW:
+        return "diverged", f"energy came from nothing {speed}"
+    return "not_at_rest", f"still moving at time.end_s = {study.time.end_s:g} s"
+
+
+def _final_state(scene, study, points: dict[str, np.ndarray]) -> FinalState:
+    body, asked = scene.body, study.quantities
+    return FinalState(
+        **{name: points[name] for name in ("x", "y", "x_initial", "y_initial", "volume", "plastic_strain")},
+        volume_initial=scene.points.volume,
+        cell=scene.cell,
+        spacing=scene.cell / np.sqrt(study.discretisation.points_per_cell),
+        toe=body.toe,
+        crest_edge=body.crest_edge,
+        crest_height=body.height,
+        length=body.length,
+        displacement_threshold=asked.displacement_threshold_m,
+        front_quantile=asked.front_quantile,
+        block_plastic_strain=asked.block_plastic_strain,
+        block_minimum_area=asked.block_minimum_area_m2,
+        surface_bin=study.output.surface_bin_m,
+    )
+
+
+def _quantities(prepared: Prepared, points, observer: _Observer, now: Progress, status: str) -> dict[str, Any]:
+    """Every active quantity by name; NaN for a failed run."""
+    study = prepared.study
+    names = [variable.name for variable in active_variables(study) if variable.name in QUANTITIES]
+    measured = {
+        "time_at_rest": now.time if status == "ok" else nan,
+        "energy_balance_error": _energy_balance_error(now),
+        "numerical_dissipation_share": _share(now.grid_gain - now.kinetic, now),
+    }
+    if status in FAILED:
+        return dict.fromkeys((*names, "initial_failure_volume"), nan) | measured
+    state = _final_state(prepared.scene, study, points)
+    end_of_first_slide = first_minimum(np.array(observer.history["kinetic_energy"]))
+    measured["initial_failure_volume"] = observer.history["failed_volume"][end_of_first_slide]
+    return {name: QUANTITIES[name](state) for name in names} | measured
+
+
+def _energy_balance_error(now: Progress) -> float:
+    """Work of gravity that is neither kinetic, elastic or plastic, nor lost to friction or the transfer, as a share."""
+    lost = now.grid_gain - now.kinetic
+    return _share(now.gravity_work - now.kinetic - now.stress_work - now.friction_work - lost, now)
+
+
+def _share(energy: float, now: Progress) -> float:
+    return energy / abs(now.gravity_work) if isfinite(energy) and now.gravity_work != 0.0 else nan

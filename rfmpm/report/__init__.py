@@ -1,0 +1,8 @@
+"""Figures, tables and documents made of results; the page of a campaign and the pictures of a realisation."""
+
+from rfmpm.report.document import write
+from rfmpm.report.field_page import write_field
+from rfmpm.report.simulation_picture import write_animation, write_simulation_picture
+from rfmpm.report.summary import summary_lines
+
+__all__ = ["summary_lines", "write", "write_animation", "write_field", "write_simulation_picture"]

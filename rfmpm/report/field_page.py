@@ -1,0 +1,116 @@
+"""The random field of a study by itself: a picture, and its sample statistics beside the asked ones."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from rfmpm.report.slope_figures import WIDTH, draw_panel, panel_height, view
+from rfmpm.report.style import BLUE, DOTS_PER_INCH, ORANGE, STRENGTH_MAP, VERMILION, drawing, new_figure
+
+SAMPLE = 200  # realisations behind the statistics; their standard error is then about 0.07 of one realisation's scatter
+NAMES = {
+    "mean": "mean",
+    "standard_deviation": "standard deviation",
+    "correlation_h": "correlation along h",
+    "correlation_v": "correlation along v",
+}
+
+
+def write_field(study, index: int, directory: Path) -> list[str]:
+    """Draw one realisation of the cohesion field and compare the statistics of many with the asked ones.
+
+    Args:
+        study: the Study.
+        index: of the realisation to draw.
+        directory: gets field.png.
+
+    Returns:
+        Lines of a table: asked and found mean, standard deviation [kPa] and correlations [-], with standard errors.
+        A study without a random field gives one line that says so, and no picture.
+    """
+    from rfmpm import realisation
+    from rfmpm.random_fields.field import realise
+    from rfmpm.random_fields.statistics import statistics
+    from rfmpm.seeds import standard_normal
+
+    if "cohesion" not in study.random_field:
+        return ["no random field in this study: every realisation is the same"]
+    settings = study.random_field["cohesion"]
+    mean = next(m.cohesion_kpa for m in study.material if m.name == settings.material) * 1000.0
+    prepared = realisation.prepare(study)
+    field, position = prepared.fields["cohesion"], prepared.scene.points.position
+    points = np.column_stack([position.x, position.y])
+    xis = [standard_normal(study.study.seed, 0, i, field.n_variables) for i in range(index, index + SAMPLE)]
+    records = statistics(field, settings, mean, points, xis)
+    sample = np.array([realise(field, xi) for xi in xis]) / 1000.0
+    directory = Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    _draw(study, index, points, sample, field.marginal, records, directory / "field.png")
+    return _table(records)
+
+
+def _table(records: Sequence) -> list[str]:
+    lines = [
+        f"{SAMPLE} realisations on the material points; correlations of the standard-normal field below the marginal",
+        f"{'':<25}{'lag [m]':>7}{'asked':>10}{'found':>10}{'std. error':>12}{'in std. errors':>18}",
+    ]
+    for record in records:
+        unit = 1000.0 if record.name in ("mean", "standard_deviation") else 1.0
+        name = NAMES[record.name] + (" [kPa]" if unit > 1.0 else "")
+        lag = f"{record.lag:.2f}" if unit == 1.0 else ""
+        asked, found, error = (value / unit for value in (record.asked, record.found, record.standard_error))
+        ratio = (found - asked) / error if error > 0.0 else float("nan")
+        lines.append(f"{name:<25}{lag:>7}{asked:>10.4f}{found:>10.4f}{error:>12.4f}{ratio:>18.1f}")
+    return lines
+
+
+def _draw(study, index: int, points: np.ndarray, sample: np.ndarray, marginal, records: Sequence, path: Path) -> None:
+    from rfmpm.mpm.scene import outline
+
+    polygon = outline(study)
+    frame = view([polygon[:, 0]], [polygon[:, 1]])
+    height = panel_height(frame) + 0.35
+    with drawing():
+        figure = new_figure(WIDTH, height + 3.3)
+        grid = figure.add_gridspec(2, 2, height_ratios=[height, 3.3])
+        axes = figure.add_subplot(grid[0, :])
+        axes.set_title(f"Peak cohesion, realisation {index}")
+        places = {"x": points[:, 0], "y": points[:, 1]}
+        ends = tuple(np.percentile(sample[0], [1.0, 99.0]))
+        draw_panel(figure, axes, places, sample[0], polygon, frame, ends, "cohesion [kPa]", STRENGTH_MAP)
+        _histogram(figure.add_subplot(grid[1, 0]), index, sample, marginal)
+        _correlations(figure.add_subplot(grid[1, 1]), records)
+        figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
+
+
+def _histogram(axes, index: int, sample: np.ndarray, marginal) -> None:
+    # The asked density by change of variable from the standard normal: it needs no formula of each distribution.
+    z = np.linspace(-4.0, 4.0, 801)
+    value = marginal.transform(z) / 1000.0
+    density = np.exp(-0.5 * z**2) / np.sqrt(2.0 * np.pi) / np.gradient(value, z)
+    edges = np.linspace(*np.percentile(sample, [0.05, 99.95]), 41)
+    axes.hist(sample.ravel(), bins=edges, density=True, color=BLUE, alpha=0.3, label=f"{len(sample)} realisations")
+    axes.hist(sample[0], bins=edges, density=True, histtype="step", color=BLUE, label=f"realisation {index}")
+    axes.plot(value, density, color=VERMILION, label="asked")
+    axes.set(xlabel="cohesion [kPa]", ylabel="density [1/kPa]", title="Distribution", xlim=edges[[0, -1]])
+    axes.legend(loc="upper right")
+
+
+def _correlations(axes, records: Sequence) -> None:
+    for name, colour, marker in (("correlation_h", BLUE, "o"), ("correlation_v", ORANGE, "s")):
+        chosen = [record for record in records if record.name == name]
+        if not chosen:
+            continue
+        lag = [record.lag for record in chosen]
+        errors = [2.0 * record.standard_error for record in chosen]
+        axes.plot(lag, [record.asked for record in chosen], color=colour, lw=1.2)
+        axes.errorbar(
+            lag, [record.found for record in chosen], errors, color=colour, marker=marker, ms=4, ls="", lw=1.2
+        )
+        axes.plot(
+            [], [], color=colour, marker=marker, ms=4, lw=1.2, label=f"{NAMES[name].removeprefix('correlation ')}"
+        )
+    axes.axhline(0.0, color="black", lw=0.6)
+    axes.set(xlabel="lag [m]", ylabel="correlation [-]", title="Correlation: asked (line), found ± 2 std. errors")
+    axes.legend(loc="upper right")

@@ -1,0 +1,101 @@
+"""Numbers as people read them: rounded to what the interval supports, with units."""
+
+import math
+
+
+def number(value: float, digits: int = 3) -> str:
+    """Write a number with so many significant digits, without exponent where it reads well.
+
+    Args:
+        value: any unit; NaN and infinity become words.
+        digits: significant digits [-].
+
+    Returns:
+        Text such as "7.41", "0.0123", "12 300" or "2.1e-07".
+    """
+    if math.isnan(value):
+        return "unknown"
+    if math.isinf(value):
+        return "unbounded"
+    if value == 0.0:
+        return "0"
+    rounded = float(f"{value:.{digits}g}")
+    magnitude = math.floor(math.log10(abs(rounded)))
+    if magnitude < -4 or magnitude > 8:
+        return f"{rounded:.{digits - 1}e}"
+    return f"{rounded:,.{max(0, digits - 1 - magnitude)}f}".replace(",", "\N{NO-BREAK SPACE}")
+
+
+def with_unit(value: float, unit: str) -> str:
+    """Write a number and its unit, e.g. "7.41 m"; an unknown one without."""
+    text = number(value)
+    return text if math.isnan(value) or math.isinf(value) else f"{text} {unit}"
+
+
+def share(value: float) -> str:
+    """Write a probability with two digits that count, without rounding it to a certainty.
+
+    Args:
+        value: probability [-].
+
+    Returns:
+        Text such as "0.84", "0.012" or "0.9993", never "1.00".
+    """
+    if math.isnan(value):
+        return number(value)
+    if value in (0.0, 1.0):
+        return f"{value:g}"
+    if value > 0.99:
+        places = 1 - math.floor(math.log10(float(f"{1.0 - value:.2g}")))
+        return f"{value:.{places}f}"
+    return f"{value:.2f}" if value >= 0.1 else number(value, 2)
+
+
+def interval(estimate, unit: str = "") -> str:
+    """Write the confidence interval of a quantity, to two digits of its width; or that there is none.
+
+    Args:
+        estimate: an Estimate.
+        unit: appended after the upper bound.
+
+    Returns:
+        Text such as "95 % interval 6.9 to 7.9 m".
+    """
+    if math.isinf(estimate.lower) and math.isinf(estimate.upper):
+        return "no interval"
+    width = estimate.upper - estimate.lower
+    if width == 0.0:
+        return "all equal, no interval"
+    places = max(0, 1 - math.floor(math.log10(width))) if 0.0 < width < math.inf else 2
+    bounds = [number(b) if math.isinf(b) else f"{b:.{places}f}" for b in (estimate.lower, estimate.upper)]
+    return f"{_level(estimate)} interval {bounds[0]} to {bounds[1]}{' ' + unit if unit else ''}"
+
+
+def share_interval(estimate) -> str:
+    """Write the confidence interval of a probability, e.g. "95 % interval 0.73 to 0.92"."""
+    return f"{_level(estimate)} interval {share(estimate.lower)} to {share(estimate.upper)}"
+
+
+def _level(estimate) -> str:
+    return f"{100.0 * estimate.confidence:g} %"
+
+
+def duration(seconds: float) -> str:
+    """Write a time span in the unit that suits it.
+
+    Args:
+        seconds: time span [s].
+
+    Returns:
+        Text such as "14.2 s", "12.5 min" or "3.1 h".
+    """
+    if math.isnan(seconds) or seconds < 120.0:
+        return with_unit(seconds, "s")
+    if seconds < 2.0 * 3600.0:
+        return f"{number(seconds / 60.0)} min"
+    return f"{number(seconds / 3600.0)} h"
+
+
+def count(n: int, noun: str) -> str:
+    """Write "1 realisation" or "5 realisations"."""
+    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"

@@ -1,0 +1,29 @@
+"""The only writer of result files: labelled NetCDF datasets made from the one table of variables."""
+
+from rfmpm.results.netcdf import (
+    ENSEMBLE_FILE,
+    UnreadableRows,
+    content_hash,
+    dataset,
+    open_ensemble,
+    read_rows,
+    write_dataset,
+    write_rows,
+)
+from rfmpm.results.provenance import global_attributes, source_hash, versions
+from rfmpm.results.simulation import write_simulation
+
+__all__ = [
+    "ENSEMBLE_FILE",
+    "UnreadableRows",
+    "content_hash",
+    "dataset",
+    "global_attributes",
+    "open_ensemble",
+    "read_rows",
+    "source_hash",
+    "versions",
+    "write_dataset",
+    "write_rows",
+    "write_simulation",
+]

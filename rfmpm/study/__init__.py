@@ -1,0 +1,24 @@
+"""The configuration: what a study file may say, and what is wrong with one that says something else."""
+
+from rfmpm.study.errors import StudyError
+from rfmpm.study.load import load_study
+from rfmpm.study.models import (
+    BlockGeometry,
+    ElasticMaterial,
+    RandomField,
+    SlopeGeometry,
+    VonMisesMaterial,
+)
+from rfmpm.study.study import NOT_PHYSICS, Study
+
+__all__ = [
+    "NOT_PHYSICS",
+    "BlockGeometry",
+    "ElasticMaterial",
+    "RandomField",
+    "SlopeGeometry",
+    "Study",
+    "StudyError",
+    "VonMisesMaterial",
+    "load_study",
+]

@@ -1,0 +1,219 @@
+"""What several keys of a study must satisfy together."""
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from math import floor, isclose, radians, sqrt, tan
+from typing import Any
+
+from pydantic import BaseModel
+
+from rfmpm.study.errors import Problem
+from rfmpm.study.schema import KeyPath, field_at, one_of, value_at
+
+LARGEST_POINT_COUNT = 5_000_000
+LARGEST_CELL_COUNT = 20_000_000
+LARGEST_BIN_COUNT = 100_000
+LARGEST_CHOLESKY_COUNT = 20_000
+SMALLEST_CELLS = {("slope", "height_m"): 4, ("slope", "crest_m"): 2, ("block", "width_m"): 1, ("block", "height_m"): 1}
+
+
+class Unknown(LookupError):
+    """A value that a check needs is missing or wrong."""
+
+
+class Known:
+    """The values of a study that are right in themselves, defaults filled in, looked up by dotted path.
+
+    Args:
+        model: the model of the whole study.
+        data: the study as nested dicts and lists.
+        doubtful: paths of the values that are wrong.
+    """
+
+    def __init__(self, model: type[BaseModel], data: dict, doubtful: set[KeyPath]):
+        self.model, self.data, self.doubtful = model, data, doubtful
+
+    def __getitem__(self, dotted: str) -> Any:
+        path = path_of(dotted)
+        if any(path[:length] in self.doubtful for length in range(1, len(path) + 1)):
+            raise Unknown(dotted)
+        value = value_at(self.data, path, default=...)
+        if value is not ...:
+            return value
+        try:
+            _, info = field_at(self.model, self.data, path)
+        except (KeyError, TypeError):
+            raise Unknown(dotted) from None
+        if info is None or info.is_required():
+            raise Unknown(dotted)
+        return info.get_default(call_default_factory=True)
+
+
+def path_of(dotted: str) -> KeyPath:
+    """'material.0.name' as ('material', 0, 'name')."""
+    return tuple(int(key) if key.isdecimal() else key for key in dotted.split("."))
+
+
+def joint_problems(known: Known) -> list[Problem]:
+    """Everything that is wrong between keys, as far as their values are known."""
+    found = []
+    for check in CHECKS:
+        problems = check(known)
+        while True:
+            try:
+                found.append(next(problems))
+            except (StopIteration, Unknown):
+                break
+    return found
+
+
+def _problem(known: Known, dotted: str, text: str) -> Problem:
+    return Problem(path_of(dotted), text, known[dotted])
+
+
+def _lengths_fit_the_cells(known: Known, name: str) -> Iterator[Problem]:
+    kind, cell, length = known["geometry.kind"], known["discretisation.cell_m"], known[f"geometry.{name}"]
+    least, cells = SMALLEST_CELLS[kind, name], length / cell
+    if isclose(cells, round(cells), rel_tol=1e-9) and round(cells) >= least:
+        return
+    nearest = [cell * count for count in (floor(cells), floor(cells) + 1) if count >= least] or [cell * least]
+    text = (
+        f"must be a whole number of cells of {cell:.10g} m, at least {least}; "
+        f"nearest: {' or '.join(f'{value:.10g}' for value in nearest)}"
+    )
+    yield _problem(known, f"geometry.{name}", text)
+
+
+def _height_fits(known: Known) -> Iterator[Problem]:
+    yield from _lengths_fit_the_cells(known, "height_m")
+
+
+def _width_fits(known: Known) -> Iterator[Problem]:
+    yield from _lengths_fit_the_cells(known, "crest_m" if known["geometry.kind"] == "slope" else "width_m")
+
+
+def _body(known: Known) -> tuple[float, float, float]:
+    """Area [m2], length [m] and height [m] of the body."""
+    height = known["geometry.height_m"]
+    if known["geometry.kind"] == "block":
+        width = known["geometry.width_m"]
+        return width * height, width, height
+    crest, face = known["geometry.crest_m"], height / tan(radians(known["geometry.angle_deg"]))
+    return (crest + 0.5 * face) * height, crest + face, height
+
+
+def _points_are_affordable(known: Known) -> Iterator[Problem]:
+    cell, per_cell = known["discretisation.cell_m"], known["discretisation.points_per_cell"]
+    count = _body(known)[0] / cell**2 * per_cell
+    fields = known["random_field"]
+    if count > LARGEST_POINT_COUNT:
+        yield _problem(known, "discretisation.cell_m", _too_many("material points", count, LARGEST_POINT_COUNT, cell))
+    elif "cohesion" in fields and count > LARGEST_CHOLESKY_COUNT:
+        method = "random_field.cohesion.method"
+        if known[method] == "cholesky":
+            text = (
+                f"{count:,.0f} material points need a dense factor of {count**2 * 8 / 1e9:,.1f} GB; at most "
+                f"{LARGEST_CHOLESKY_COUNT:,} points: take discretisation.cell_m of at least "
+                f"{cell * sqrt(count / LARGEST_CHOLESKY_COUNT):.3g}, or fewer discretisation.points_per_cell"
+            )
+            yield _problem(known, method, text)
+
+
+def _cells_are_affordable(known: Known) -> Iterator[Problem]:
+    cell = known["discretisation.cell_m"]
+    _, length, height = _body(known)
+    count = (length + known["geometry.foreland_m"]) * height / cell**2
+    if count > LARGEST_CELL_COUNT:
+        yield _problem(known, "discretisation.cell_m", _too_many("cells", count, LARGEST_CELL_COUNT, cell))
+
+
+def _too_many(what: str, count: float, most: int, cell: float) -> str:
+    larger = cell * sqrt(count / most)
+    return f"gives {_rounded(count)} {what} in this geometry, at most {most:,}: take cells of at least {larger:.3g} m"
+
+
+def _rounded(count: float) -> str:
+    return f"{count:,.0f}" if count < 1e12 else f"{count:.3g}"
+
+
+def _surface_bins_are_affordable(known: Known) -> Iterator[Problem]:
+    width = known["output.surface_bin_m"]
+    length = _body(known)[1] + known["geometry.foreland_m"]
+    if width and length / width > LARGEST_BIN_COUNT:
+        least = length / LARGEST_BIN_COUNT
+        text = f"gives {_rounded(length / width)} bins, at most {LARGEST_BIN_COUNT:,}: take {least:.3g} or more"
+        yield _problem(known, "output.surface_bin_m", text)
+
+
+def _residual_is_below_the_peak(known: Known) -> Iterator[Problem]:
+    for index in range(len(known["material"])):
+        if known[f"material.{index}.law"] == "von_mises":
+            residual, peak = known[f"material.{index}.residual_cohesion_kpa"], known[f"material.{index}.cohesion_kpa"]
+            if residual is not None and residual > peak:
+                text = f"must be at most the peak, cohesion_kpa = {peak:.10g}"
+                yield _problem(known, f"material.{index}.residual_cohesion_kpa", text)
+
+
+def _softening_does_not_snap_back(known: Known) -> Iterator[Problem]:
+    """On the uniaxial path of the shear stress invariant the softening line must be less steep than the elastic one."""
+    for index in range(len(known["material"])):
+        material = f"material.{index}"
+        if known[f"{material}.law"] != "von_mises":
+            continue
+        shear_modulus = known[f"{material}.youngs_modulus_kpa"] / (2 * (1 + known[f"{material}.poissons_ratio"]))
+        scale = 1 / sqrt(3)
+        if reference := known[f"{material}.softening_reference_cell_m"]:
+            scale *= known["discretisation.cell_m"] / reference
+        if known[f"{material}.strength_convention"] == "sqrt_3j2":
+            scale /= sqrt(3)
+        if scale * known[f"{material}.softening_modulus_kpa"] >= shear_modulus:
+            text = (
+                f"must be less than {shear_modulus / scale:.6g} with these cells and this stiffness, "
+                "else the stress falls faster than the material can unload"
+            )
+            yield _problem(known, f"{material}.softening_modulus_kpa", text)
+
+
+def _there_is_one_material(known: Known) -> Iterator[Problem]:
+    count = len(known["material"])
+    if count != 1:
+        yield _problem(
+            known, "material", f"must be exactly one table, written [[material]]; there are {count or 'none'}"
+        )
+
+
+def _names_are_unique(known: Known) -> Iterator[Problem]:
+    names = [known[f"material.{index}.name"] for index in range(len(known["material"]))]
+    for name, count in Counter(names).items():
+        if count > 1:
+            last = len(names) - 1 - names[::-1].index(name)
+            yield _problem(known, f"material.{last}.name", f"is the name of {count} materials; names must differ")
+
+
+def _field_has_its_material(known: Known) -> Iterator[Problem]:
+    for variable in known["random_field"]:
+        key = f"random_field.{variable}.material"
+        asked = known[key]
+        laws = {known[f"material.{i}.name"]: known[f"material.{i}.law"] for i in range(len(known["material"]))}
+        if not laws:
+            return
+        strong = [name for name, law in laws.items() if law != "elastic"]
+        if asked not in laws:
+            yield _problem(known, key, f"names no material; must be {one_of(list(laws), asked)}")
+        elif asked not in strong:
+            text = f'is a material with law = "{laws[asked]}", which has no {variable}'
+            yield _problem(known, key, text)
+
+
+CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
+    _height_fits,
+    _width_fits,
+    _points_are_affordable,
+    _cells_are_affordable,
+    _surface_bins_are_affordable,
+    _residual_is_below_the_peak,
+    _softening_does_not_snap_back,
+    _there_is_one_material,
+    _names_are_unique,
+    _field_has_its_material,
+]

@@ -1,0 +1,183 @@
+"""The tables of a study file: types, ranges, units and defaults; what concerns several keys at once is in `checks`."""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, Strict
+
+from rfmpm.study.schema import Hint
+
+Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
+Positive = Annotated[Number, Field(gt=0)]
+NotNegative = Annotated[Number, Field(ge=0)]
+Length = Annotated[Number, Field(gt=0, le=1e6)]
+Text = Annotated[str, Strict(), Field(pattern=r"\S")]
+LARGEST_SEED = 2**63 - 1  # what a NetCDF attribute holds
+
+
+def _whole(value: object) -> object:
+    # A choice among integers compares with ==, for which 4.0 is 4 and true is 1.
+    if type(value) is not int:
+        raise ValueError("not a whole number")
+    return value
+
+
+class Table(BaseModel):
+    """A table of the study file: immutable, and a key it does not know is an error."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Campaign(Table):
+    """[study]"""
+
+    name: Text = Field(description="Title of the study")
+    seed: Annotated[int, Strict()] = Field(ge=0, le=LARGEST_SEED, description="Seed of every random stream")
+    realisations: Annotated[int, Strict()] = Field(1, ge=1, le=10_000_000, description="Number of realisations")
+
+
+class SlopeGeometry(Table):
+    """[geometry] of a slope on a firm base at the level of its toe"""
+
+    kind: Literal["slope"]
+    height_m: Length = Field(description="Height of the slope [m], a whole number of cells, at least 4")
+    crest_m: Length = Field(description="Width of the crest [m], a whole number of cells, at least 2")
+    angle_deg: Number = Field(ge=0.01, le=90, description="Inclination of the slope face [degrees]")
+    foreland_m: Length = Field(description="Free length in front of the toe [m]")
+
+
+class BlockGeometry(Table):
+    """[geometry] of a rectangular body against the left side"""
+
+    kind: Literal["block"]
+    width_m: Length = Field(description="Width of the block [m], a whole number of cells")
+    height_m: Length = Field(description="Height of the block [m], a whole number of cells")
+    foreland_m: NotNegative = Field(le=1e6, description="Free length in front of the block [m]; 0 confines it")
+
+
+Geometry = Annotated[SlopeGeometry | BlockGeometry, Field(discriminator="kind")]
+
+
+class Discretisation(Table):
+    """[discretisation]"""
+
+    cell_m: Annotated[Number, Field(ge=1e-6, le=1e6)] = Field(description="Side of the square cells [m]")
+    points_per_cell: Annotated[Literal[1, 4, 9, 16], BeforeValidator(_whole)] = Field(
+        description="Material points in a full cell"
+    )
+    shape: Literal["linear", "quadratic_bspline"] = Field(description="Shape function")
+    dissipation_time_s: Annotated[float, Strict(), Hint("inf for no dissipation")] = Field(
+        5.0, gt=0, description="Time in which the transfer damps velocities below the grid's resolution [s]; inf = none"
+    )
+
+
+class FixedBoundary(Table):
+    """A boundary on which nothing moves"""
+
+    kind: Literal["fixed"]
+
+
+class RollerBoundary(Table):
+    """A boundary that prevents motion across it and nothing else"""
+
+    kind: Literal["roller"]
+
+
+class FrictionBoundary(Table):
+    """A boundary with Coulomb friction"""
+
+    kind: Literal["friction"]
+    coefficient: NotNegative = Field(description="Coulomb friction coefficient [1]")
+
+
+BoundaryKind = Annotated[FixedBoundary | RollerBoundary | FrictionBoundary, Field(discriminator="kind")]
+
+
+class Boundary(Table):
+    """[boundary]"""
+
+    base: BoundaryKind = Field(description="The firm base under the slope")
+    sides: BoundaryKind = Field(description="The two vertical sides of the domain")
+
+
+class ElasticMaterial(Table):
+    """[[material]] that never yields"""
+
+    name: Text = Field(description="Name by which other tables refer to the material")
+    law: Literal["elastic"]
+    unit_weight_kn_m3: Positive = Field(description="Unit weight [kN/m3]")
+    youngs_modulus_kpa: Positive = Field(description="Young's modulus [kPa]")
+    poissons_ratio: Number = Field(ge=0, le=0.49, description="Poisson's ratio [1]")
+
+
+class VonMisesMaterial(ElasticMaterial):
+    """[[material]] with an undrained strength that softens linearly to a residual"""
+
+    law: Literal["von_mises"]
+    cohesion_kpa: Positive = Field(description="Peak cohesion [kPa], or the mean of its random field")
+    residual_cohesion_kpa: Positive | None = Field(
+        None, description="Residual cohesion [kPa], at most the peak; scales with a random peak. Default: the peak"
+    )
+    softening_modulus_kpa: NotNegative = Field(
+        0.0, description="Loss of cohesion per unit plastic shear strain invariant [kPa]"
+    )
+    softening_reference_cell_m: Length | None = Field(
+        None, description="Cell size the softening modulus refers to [m]; left out: the modulus is not scaled"
+    )
+    strength_convention: Literal["sqrt_j2", "sqrt_3j2"] = Field(
+        "sqrt_j2", description="Invariant that equals the cohesion at yield; sqrt_j2: undrained strength"
+    )
+
+    def model_post_init(self, context: object) -> None:
+        """Let a residual that is not given equal the peak, without counting it among the given keys."""
+        if self.residual_cohesion_kpa is None:
+            object.__setattr__(self, "residual_cohesion_kpa", self.cohesion_kpa)
+
+
+Material = Annotated[ElasticMaterial | VonMisesMaterial, Field(discriminator="law")]
+
+
+class RandomField(Table):
+    """[random_field.<variable>]"""
+
+    material: Text = Field(description="Name of the material whose variable is random")
+    distribution: Literal["lognormal", "normal_truncated"] = Field(description="Marginal distribution")
+    coefficient_of_variation: Annotated[Number, Hint("leave the random_field table out for no variation")] = Field(
+        gt=0, le=2, description="Standard deviation over mean [1]"
+    )
+    correlation: Literal["markov_separable", "markov_ellipsoidal", "gaussian"] = Field(description="Correlation")
+    scale_of_fluctuation_h_m: Positive = Field(description="Horizontal scale of fluctuation [m]")
+    scale_of_fluctuation_v_m: Positive = Field(description="Vertical scale of fluctuation [m]")
+    rotation_deg: Number = Field(0.0, ge=-180, le=180, description="Rotation of the axes, anticlockwise [degrees]")
+    method: Literal["cholesky"] = Field("cholesky", description="How the field is generated")
+    averaging: Literal["point"] = Field("point", description="What a value stands for: the field at the point")
+
+
+class Time(Table):
+    """[time]"""
+
+    end_s: Positive = Field(description="Model time at which a realisation ends at the latest [s]")
+    initial_stress: Literal["elastic"] = Field("elastic", description="How the initial stresses are found")
+    scheme: Literal["explicit"] = Field("explicit", description="Time integration")
+    step_fraction: Positive = Field(0.5, le=1, description="Time step over the critical time step [1]")
+
+
+class Quantities(Table):
+    """[quantities]"""
+
+    displacement_threshold_m: Positive = Field(0.5, description="Displacement beyond which a point has failed [m]")
+    front_quantile: Number = Field(
+        0.995, ge=0.5, le=1, description="Share of the failed mass that lies behind the front [1]"
+    )
+    block_plastic_strain: Positive = Field(0.2, description="Plastic strain below which a point belongs to a block [1]")
+    block_minimum_area_m2: NotNegative = Field(0.5, description="Area below which a block is not counted [m2]")
+    run_out_limit_m: NotNegative = Field(5.0, description="The limit l in P(run-out > l) [m]")
+    inundation_depth_m: Positive = Field(0.1, description="Depth from which a place counts as inundated [m]")
+
+
+class Output(Table):
+    """[output]"""
+
+    directory: Text = Field(description="Folder of the results")
+    surface_bin_m: Length | None = Field(
+        None, description="Bin width of the final ground surface [m]; left out: no surface is kept"
+    )

@@ -1,0 +1,137 @@
+"""A study: everything that a campaign depends on, validated as a whole."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from copy import deepcopy
+from numbers import Integral, Real
+from os import PathLike, fspath
+from typing import Annotated, Any, Literal
+
+import tomli_w
+from pydantic import BaseModel, Field
+
+from rfmpm.study.checks import Known, joint_problems, path_of
+from rfmpm.study.diagnosis import Diagnosis
+from rfmpm.study.errors import Problem, StudyError
+from rfmpm.study.models import (
+    Boundary,
+    Campaign,
+    Discretisation,
+    Geometry,
+    Material,
+    Output,
+    Quantities,
+    RandomField,
+    Table,
+    Time,
+)
+from rfmpm.study.schema import Hint
+
+NOT_PHYSICS = (
+    ("study", "name"),
+    ("study", "realisations"),
+    ("output", "directory"),
+    ("quantities", "run_out_limit_m"),
+    ("quantities", "inundation_depth_m"),
+)
+
+
+class Study(Table):
+    """A validated study; attributes are the keys of the study file, in the units of their names.
+
+    Args:
+        tables: the tables of the study file as keyword arguments, each a dict.
+
+    Raises:
+        StudyError: with everything that is wrong.
+    """
+
+    study: Campaign
+    geometry: Geometry
+    discretisation: Discretisation
+    boundary: Boundary
+    material: Annotated[tuple[Material, ...], Hint("written [[material]]")] = Field(description="The materials: one")
+    random_field: dict[Literal["cohesion"], RandomField] = Field(
+        default_factory=dict, description="The random variables; left out: a homogeneous slope"
+    )
+    time: Time
+    quantities: Quantities = Quantities()
+    output: Output
+
+    def __init__(self, /, **tables: Any):
+        data = plain(tables)
+        diagnosis = Diagnosis(type(self), data, validate=lambda candidate: super(Study, self).__init__(**candidate))
+        known = Known(type(self), diagnosis.data, diagnosis.doubtful)
+        if problems := diagnosis.problems + joint_problems(known):
+            raise StudyError([str(problem) for problem in problems])
+
+    @property
+    def physics_hash(self) -> str:
+        """SHA-256 (hex) of everything that a realisation's result depends on; equal for equal physics."""
+        content = self.model_dump(exclude_none=True)
+        for table, key in NOT_PHYSICS:
+            del content[table][key]
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+    def to_toml(self) -> str:
+        """Write the study as the text of a study file, defaults included."""
+        content = self.model_dump(exclude_none=True)
+        return tomli_w.dumps({name: table for name, table in content.items() if table})
+
+    def with_changes(self, changes: Mapping[str, Any]) -> "Study":
+        """Copy the study with some keys changed, and validate the copy.
+
+        Args:
+            changes: new values by dotted path, lists by position: {"material.0.residual_cohesion_kpa": 8.0}. A path
+                may name a whole table; a key that was left to its default, here or in the file, may be set too.
+
+        Returns:
+            The changed copy.
+
+        Raises:
+            StudyError: with everything that is wrong with the copy, such as a path that is none.
+        """
+        data = plain(self.model_dump(exclude_unset=True))
+        unreachable = [Problem(path_of(path), "no such key") for path in changes if not _put(data, path, changes[path])]
+        if unreachable:
+            raise StudyError([str(problem) for problem in unreachable])
+        return type(self)(**data)
+
+    @classmethod
+    def json_schema(cls) -> dict:
+        """The JSON schema of the study file."""
+        return cls.model_json_schema()
+
+
+def plain(value: Any) -> Any:
+    """Nested dicts, lists and Python numbers for any mappings, sequences, tables and NumPy numbers; copies."""
+    if isinstance(value, BaseModel):
+        return plain(value.model_dump(exclude_unset=True))
+    if isinstance(value, Mapping):
+        return {str(key): plain(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(entry) for entry in value]
+    if isinstance(value, PathLike):
+        return fspath(value)
+    if isinstance(value, bool | int | float):
+        return value
+    if isinstance(value, Integral):
+        return int(value)
+    return float(value) if isinstance(value, Real) else value
+
+
+def _put(data: Any, dotted: str, value: Any) -> bool:
+    """Put a value into nested dicts and lists, making the tables on its way; False if a list or value is in the way."""
+    *parents, last = path_of(dotted)
+    for key in parents:
+        if isinstance(data, dict):
+            data = data.setdefault(key, {})
+        elif isinstance(data, list) and isinstance(key, int) and key < len(data):
+            data = data[key]
+        else:
+            return False
+    if isinstance(data, dict) or (isinstance(data, list) and isinstance(last, int) and last < len(data)):
+        data[last] = deepcopy(plain(value))
+        return True
+    return False

@@ -1,0 +1,23 @@
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def settings() -> SimpleNamespace:
+    return SimpleNamespace(
+        distribution="lognormal",
+        coefficient_of_variation=0.25,
+        correlation="markov_ellipsoidal",
+        scale_of_fluctuation_h_m=6.0,
+        scale_of_fluctuation_v_m=1.0,
+        rotation_deg=0.0,
+        method="cholesky",
+        averaging="point",
+    )
+
+
+@pytest.fixture
+def points() -> np.ndarray:
+    return np.random.default_rng(3).uniform([0.0, 0.0], [15.0, 5.0], (150, 2))

@@ -1,0 +1,151 @@
+import netCDF4
+import numpy as np
+import pytest
+
+from rfmpm import results
+from rfmpm.variables import FAILED, STATUS, VARIABLES, failed_row
+
+BINS = 16  # the coarse domain is 4 + 4 + 8 m long
+
+
+def finished_row(index, **changes):
+    row = {name: 0.1 * index + place for place, name in enumerate(VARIABLES)}
+    row.update(
+        realisation=index, level=0, run_out_censored=False, retrogression_censored=True, block_count=index,
+        status=STATUS["ok"], status_reason="", step_count=1000 + index, time_at_rest=np.nan,
+        final_surface=np.linspace(4.0, 0.0, BINS) + index,
+    )  # fmt: skip
+    return row | changes
+
+
+@pytest.fixture
+def rows(study):
+    return [finished_row(2), failed_row(study, 1, "diverged", "too fast é", wall_time=0.5), finished_row(0)]
+
+
+@pytest.fixture
+def stored(study, rows, tmp_path):
+    results.write_rows(tmp_path / "ensemble.nc", rows, study)
+    return results.open_ensemble(tmp_path)
+
+
+def test_rows_come_back_sorted_and_exact(stored, study):
+    np.testing.assert_array_equal(stored["realisation"], [0, 1, 2])
+    for place in (0, 2):
+        for name, value in finished_row(place).items():
+            np.testing.assert_array_equal(stored[name].values[place], value)
+
+
+def test_failed_row_is_missing_values_with_a_status(stored):
+    assert int(stored["status"][1]) == STATUS["diverged"]
+    assert str(stored["status_reason"].values[1]) == "too fast é"
+    for name in set(VARIABLES) - {"status", "status_reason", "wall_time"}:
+        assert np.all(np.isnan(stored[name].values[1])), name
+
+
+def test_on_disk_types_compression_and_fill_values_are_those_of_the_table(stored, tmp_path):
+    with netCDF4.Dataset(tmp_path / "ensemble.nc") as file:
+        for variable in VARIABLES.values():
+            on_disk = file.variables[variable.name]
+            assert on_disk.dimensions == variable.dims
+            if variable.dtype == "str":
+                continue
+            assert on_disk.dtype == np.dtype(variable.dtype)
+            assert on_disk.filters()["zlib"]
+            assert on_disk.filters()["shuffle"]
+        assert file.variables["block_count"]._FillValue == -1
+        assert not hasattr(file.variables["status"], "_FillValue")
+        assert file.variables["status"].flag_values.dtype == np.int8
+
+
+def test_cf_attributes(stored, study):
+    assert stored.attrs["Conventions"] == "CF-1.11"
+    assert stored["run_out"].attrs["units"] == "m"
+    assert "0.5 m" in stored["run_out"].attrs["comment"]
+    assert "units" not in stored["status"].attrs
+    assert stored["status"].attrs["flag_meanings"].split() == list(STATUS)
+    assert stored["x"].attrs["axis"] == "X"
+    np.testing.assert_allclose(stored["x"], np.arange(BINS) + 0.5, rtol=1e-12)  # identity
+    assert stored.attrs["study"] == study.to_toml()
+    assert stored.attrs["physics_hash"] == study.physics_hash
+    assert stored.attrs["seed"] == study.study.seed
+    assert {"source_hash", "rfmpm_version", "library_versions"} <= set(stored.attrs)
+
+
+def test_missing_variable_is_an_error_that_names_it(study):
+    row = finished_row(0)
+    del row["influence_distance"]
+    with pytest.raises(KeyError, match="influence_distance"):
+        results.dataset([row], study)
+
+
+def test_surfaces_of_different_length_are_an_error(study):
+    with pytest.raises(ValueError, match="different lengths"):
+        results.dataset([finished_row(0), finished_row(1, final_surface=np.zeros(BINS + 1))], study)
+
+
+def test_surface_has_its_length_even_if_every_row_failed(study):
+    found = results.dataset([failed_row(study, 0, next(iter(FAILED)), "")], study)
+    assert found["final_surface"].shape == (1, BINS)
+
+
+def test_without_surface_there_is_no_x(study):
+    found = results.dataset([finished_row(0)], study.with_changes({"output": {"directory": "elsewhere"}}))
+    assert set(found.sizes) == {"realisation"}
+
+
+def test_hash_ignores_order_and_wall_time_and_nothing_else(study, rows):
+    expected = results.content_hash(results.dataset(rows, study))
+    assert results.content_hash(results.dataset(rows[::-1], study)) == expected
+    assert results.content_hash(results.dataset([rows[0] | {"wall_time": 9.0}, *rows[1:]], study)) == expected
+    for name in set(rows[0]) - {"wall_time"}:
+        value = rows[0][name]
+        other = "x" if name == "status_reason" else np.nextafter(value, 9e9) if isinstance(value, float) else value + 1
+        if name in ("run_out_censored", "retrogression_censored"):
+            other = not value
+        if name == "time_at_rest":
+            other = 1.0
+        changed = results.dataset([rows[0] | {name: other}, *rows[1:]], study)
+        assert results.content_hash(changed) != expected, name
+
+
+def test_hash_survives_the_file(stored, study, rows):
+    assert results.content_hash(stored) == results.content_hash(results.dataset(rows, study))
+    assert stored.attrs["content_hash"] == results.content_hash(stored)
+
+
+def test_read_rows_gives_what_was_written(study, rows, tmp_path):
+    results.write_rows(tmp_path / "rows.nc", rows, study, {"note": "kept"})
+    found, attributes = results.read_rows(tmp_path / "rows.nc")
+    assert attributes["note"] == "kept"
+    assert results.content_hash(results.dataset(found, study)) == results.content_hash(results.dataset(rows, study))
+    np.testing.assert_array_equal(found[2]["final_surface"], rows[0]["final_surface"])
+
+
+@pytest.mark.parametrize("size", [0, 100, 4000])
+def test_torn_file_is_unreadable(study, rows, tmp_path, size):
+    path = tmp_path / "rows.nc"
+    results.write_rows(path, rows, study)
+    path.write_bytes(path.read_bytes()[:size])
+    with pytest.raises(results.UnreadableRows, match=r"rows\.nc"):
+        results.read_rows(path)
+
+
+def test_file_appears_whole_or_not_at_all(study, rows, tmp_path, monkeypatch):
+    path = tmp_path / "rows.nc"
+    results.write_rows(path, rows[:1], study)
+    before = path.read_bytes()
+
+    def fail(*_):
+        raise OSError("no space left")
+
+    monkeypatch.setattr(results.netcdf.os, "replace", fail)
+    with pytest.raises(OSError, match="no space left"):
+        results.write_rows(path, rows, study)
+    assert path.read_bytes() == before
+    assert [entry.name for entry in tmp_path.iterdir()] == ["rows.nc"]
+
+
+def test_incomplete_campaign_is_said_to_be_so(tmp_path):
+    with pytest.raises(FileNotFoundError, match="completed"):
+        results.open_ensemble(tmp_path)

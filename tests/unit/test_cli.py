@@ -1,0 +1,347 @@
+"""The command line: what each command asks of the rooms below it, what it prints, and its exit codes."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+from typer.testing import CliRunner
+
+import rfmpm
+from rfmpm.cli import app
+from rfmpm.study import Study
+from rfmpm.variables import STATUS
+
+CONFIGS = Path(__file__).parents[2] / "configs"
+RANDOM = str(CONFIGS / "short_slope_random.toml")
+HOMOGENEOUS = str(CONFIGS / "short_slope.toml")
+SUMMARY = ["mean run-out 7 m (6 to 8)", "P(run-out > 5 m) 0.8 (0.7 to 0.9)", "cost 12 s per realisation, 0 failed"]
+
+
+def call(*arguments):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+@pytest.fixture
+def replace(monkeypatch):
+    """Puts a stand-in in the place of a room of the package."""
+
+    def put(name, **content):
+        stand_in = ModuleType(f"rfmpm.{name}")
+        stand_in.__dict__.update(content)
+        monkeypatch.setitem(sys.modules, f"rfmpm.{name}", stand_in)
+        monkeypatch.setattr(rfmpm, name, stand_in, raising=False)
+
+    return put
+
+
+class FolderMismatch(ValueError):
+    pass
+
+
+class LauncherMismatch(RuntimeError):
+    pass
+
+
+class Interrupted(RuntimeError):
+    pass
+
+
+@pytest.fixture
+def campaign(replace, monkeypatch):
+    """A runner that notes how it was called and ends the way `campaign.end` says."""
+    notes = SimpleNamespace(statuses=["ok"] * 40, end=None, launched=None)
+
+    def run(study, directory, **options):
+        notes.study, notes.directory, notes.options = study, directory, options
+        if notes.end is not None:
+            raise notes.end
+        codes = np.array([STATUS[status] for status in notes.statuses], dtype="int8")
+        return None if not notes.statuses else xr.Dataset({"status": ("realisation", codes)})
+
+    errors = {"FolderMismatch": FolderMismatch, "LauncherMismatch": LauncherMismatch, "Interrupted": Interrupted}
+    replace("ensemble", run=run, **errors)
+    ranks = ModuleType("rfmpm.ensemble.mpi")
+    ranks.launched_ranks = lambda: notes.launched
+    monkeypatch.setitem(sys.modules, "rfmpm.ensemble.mpi", ranks)
+    replace("report", write=lambda folder, out=None: folder / "report.html", summary_lines=lambda data, study: SUMMARY)
+    return notes
+
+
+# --- run
+
+
+def test_run_ends_with_the_paths_and_three_lines(campaign, tmp_path):
+    result = call("run", RANDOM, "--out", tmp_path)
+    assert result.exit_code == 0
+    assert result.stdout.splitlines() == [
+        f"dataset: {tmp_path / 'ensemble.nc'}",
+        f"report:  {tmp_path / 'report.html'}",
+        *SUMMARY,
+    ]
+
+
+def test_run_takes_the_study_at_its_word(campaign):
+    call("run", RANDOM)
+    assert campaign.directory == Path("results/short_slope_random")
+    assert campaign.study == rfmpm.load_study(RANDOM)
+    assert campaign.options == {"realisations": 64, "workers": None, "fresh": False}
+
+
+def test_options_of_run_override_the_study(campaign, tmp_path):
+    call("run", RANDOM, "--realisations", 8, "--seed", 5, "--workers", 2, "--fresh", "--out", tmp_path)
+    assert (campaign.study.study.seed, campaign.study.study.realisations) == (5, 8)
+    assert campaign.options == {"realisations": 8, "workers": 2, "fresh": True}
+    assert campaign.directory == tmp_path
+
+
+def test_overrides_are_validated(campaign, tmp_path):
+    result = call("run", RANDOM, "--realisations", 0, "--seed", -1, "--out", tmp_path / "new")
+    assert result.exit_code == 2
+    assert "study.realisations = 0: must be at least 1" in result.stderr
+    assert "study.seed = -1: must be at least 0" in result.stderr
+    assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize(
+    ("end", "code"),
+    [
+        (FolderMismatch("results/x: holds results of another study"), 2),
+        (LauncherMismatch("the launcher started 2 ranks"), 2),
+        (PermissionError(13, "Permission denied", "results/x"), 2),
+        (Interrupted("stopped early with 3 of 64"), 75),
+        (KeyboardInterrupt(), 75),
+    ],
+    ids=lambda value: type(value).__name__ if isinstance(value, BaseException) else "",
+)
+def test_end_of_a_campaign_is_one_message_and_an_exit_code(campaign, tmp_path, end, code):
+    campaign.end = end
+    result = call("run", RANDOM, "--out", tmp_path)
+    assert result.exit_code == code
+    assert len(result.stderr.splitlines()) == 1
+    assert (end.filename if isinstance(end, OSError) else str(end)) in result.stderr
+    assert result.stdout == ""
+
+
+def test_a_bug_is_not_hidden_behind_an_exit_code(campaign, tmp_path):
+    campaign.end = ZeroDivisionError()
+    assert isinstance(call("run", RANDOM, "--out", tmp_path).exception, ZeroDivisionError)
+
+
+@pytest.mark.parametrize(
+    ("failed", "options", "code"),
+    [(2, [], 0), (3, [], 3), (3, ["--allow-failed", "0.1"], 0), (1, ["--allow-failed", "0"], 3)],
+)
+def test_too_many_failed_realisations_are_exit_code_3(campaign, tmp_path, failed, options, code):
+    campaign.statuses = ["diverged"] * failed + ["not_at_rest"] * 20 + ["ok"] * (20 - failed)
+    result = call("run", RANDOM, "--out", tmp_path, *options)
+    assert result.exit_code == code
+    assert result.stdout.splitlines()[-3:] == SUMMARY
+    assert (f"{failed} of 40 realisations failed" in result.stderr) == (code == 3)
+
+
+def test_only_the_first_rank_speaks(campaign, tmp_path, monkeypatch):
+    campaign.statuses = []  # what other ranks are given
+    result = call("run", RANDOM, "--out", tmp_path)
+    assert (result.exit_code, result.output) == (0, "")
+    monkeypatch.setenv("PMI_RANK", "1")
+    result = call("run", RANDOM, "--seed", -1)
+    assert (result.exit_code, result.output) == (2, "")
+    monkeypatch.setenv("PMI_RANK", "0")
+    assert "study.seed" in call("run", RANDOM, "--seed", -1).stderr
+
+
+def test_workers_and_ranks_exclude_each_other(campaign, tmp_path):
+    campaign.launched = 2
+    result = call("run", RANDOM, "--workers", 2, "--out", tmp_path)
+    assert result.exit_code == 2
+    assert "--workers" in result.stderr
+
+
+# --- simulate
+
+
+@pytest.fixture
+def simulation(replace):
+    """One realisation, computed by nobody."""
+    notes = SimpleNamespace(
+        outcome=SimpleNamespace(
+            quantities={
+                "run_out": 7.4123,
+                "retrogression_censored": np.int8(1),
+                "block_count": 3,
+                "time_at_rest": np.nan,
+            },
+            status="ok",
+            reason="",
+            step_count=12345,
+            wall_time=8.25,
+        ),
+        written=[],
+    )
+
+    def simulate(prepared, index, **options):
+        notes.prepared, notes.index, notes.options = prepared, index, options
+        return notes.outcome
+
+    def write(path):
+        notes.written.append(path)
+
+    replace("realisation", prepare=lambda study: ("prepared", study), simulate=simulate)
+    replace("results", write_simulation=lambda path, outcome, study: write(path))
+    replace(
+        "report",
+        write_simulation_picture=lambda outcome, study, path: write(path),
+        write_animation=lambda outcome, study, path: write(path),
+    )
+    words = ModuleType("rfmpm.report.words")
+    words.duration = lambda seconds: f"{seconds:g} s"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, "rfmpm.report.words", words)
+        yield notes
+
+
+def test_simulate_prints_quantities_with_units_and_the_paths(simulation, tmp_path):
+    result = call("simulate", RANDOM, "--index", 3, "--out", tmp_path)
+    assert result.exit_code == 0, result.output
+    lines = [" ".join(line.split()) for line in result.stdout.splitlines()]
+    assert lines[0] == "status ok"
+    assert "run-out distance 7.412 m" in lines
+    assert "retrogression is a lower bound yes" in lines
+    assert "number of blocks 3" in lines
+    assert "model time at which the body came to rest unknown" in lines
+    assert lines[-4:-2] == ["steps 12,345", "wall time 8.25 s"]
+    assert lines[-2:] == [str(tmp_path / "simulation.nc"), str(tmp_path / "simulation.png")]
+    assert (simulation.index, simulation.options) == (3, {"frames": 0, "homogeneous": False})
+
+
+@pytest.mark.parametrize(
+    ("options", "frames", "animated"),
+    [([], 0, False), (["--frames", 7], 7, False), (["--animate"], 60, True), (["--animate", "--frames", 9], 9, True)],
+)
+def test_animation_implies_frames(simulation, tmp_path, options, frames, animated):
+    call("simulate", RANDOM, "--out", tmp_path, *options)
+    assert simulation.options["frames"] == frames
+    assert (tmp_path / "simulation.gif" in simulation.written) == animated
+
+
+def test_simulate_has_a_folder_for_each_realisation(simulation, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    call("simulate", RANDOM, "--index", 3)
+    call("simulate", RANDOM, "--homogeneous")
+    assert simulation.options["homogeneous"]
+    folders = [path.parent.name for path in simulation.written[::2]]
+    assert folders == ["simulation_3", "simulation_homogeneous"]
+
+
+def test_status_of_a_simulation_is_said_with_its_reason(simulation, tmp_path):
+    simulation.outcome.status, simulation.outcome.reason = "not_at_rest", "still moving at 40.5 s"
+    result = call("simulate", RANDOM, "--out", tmp_path)
+    assert result.exit_code == 0
+    assert "not_at_rest: still moving at 40.5 s" in result.stdout
+    simulation.outcome.status, simulation.outcome.reason = "diverged", "energy grew at 3.2 s"
+    result = call("simulate", RANDOM, "--out", tmp_path)
+    assert result.exit_code == 3
+    assert "diverged, energy grew at 3.2 s" in result.stderr
+
+
+def test_folder_that_cannot_be_made_is_refused_before_the_simulation(simulation, tmp_path):
+    (tmp_path / "file").touch()
+    result = call("simulate", RANDOM, "--out", tmp_path / "file")
+    assert result.exit_code == 2
+    assert str(tmp_path / "file") in result.stderr
+    assert not hasattr(simulation, "index")
+
+
+# --- the other commands
+
+
+def test_field_prints_its_lines_and_the_picture(replace, tmp_path):
+    replace("report", write_field=lambda study, index, folder: [f"mean of {index}"])
+    result = call("field", RANDOM, "--index", 4, "--out", tmp_path)
+    assert result.stdout.splitlines() == ["mean of 4", str(tmp_path / "field.png")]
+
+
+def test_field_of_a_homogeneous_study_is_refused():
+    result = call("field", HOMOGENEOUS)
+    assert result.exit_code == 2
+    assert "random_field: this study has none" in result.stderr
+
+
+def test_check_says_that_nothing_is_wrong():
+    assert call("check", RANDOM).stdout == f"{RANDOM}: nothing is wrong\n"
+
+
+def test_check_prints_the_schema_alone_on_standard_output():
+    assert json.loads(call("check", "--schema").stdout) == Study.json_schema()
+    assert json.loads(call("check", "--schema", RANDOM).stdout) == Study.json_schema()
+
+
+def test_estimate_prints_what_the_campaign_would_cost(replace):
+    costs = {"points": 4040, "time_step_s": 0.00123, "total_s": 100.0, "memory_bytes": 3.2e7, "disk_bytes": 2.5e9}
+    replace("realisation", estimate_cost=lambda study: costs)
+    lines = [" ".join(line.split()) for line in call("estimate", RANDOM).stdout.splitlines()]
+    assert lines == ["points 4,040", "time step 0.00123 s", "total 100 s", "memory 32 MB", "disk 2.5 GB"]
+
+
+def test_report_passes_folder_and_file_on(replace, tmp_path):
+    replace("report", write=lambda folder, out=None: out or folder / "report.html")
+    assert call("report", tmp_path).exit_code == 2  # no ensemble.nc
+    (tmp_path / "ensemble.nc").touch()
+    assert call("report", tmp_path).stdout.strip() == str(tmp_path / "report.html")
+    assert call("report", tmp_path, "--out", "x.html").stdout.strip() == "x.html"
+
+
+def test_warmup_compiles(replace):
+    called = []
+    replace("realisation", warmup=lambda: called.append(True))
+    assert call("warmup").exit_code == 0
+    assert called == [True]
+
+
+def test_version():
+    assert call("--version").stdout.strip() == rfmpm.__version__
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["check", RANDOM]], ids=["help", "check"])
+def test_light_commands_load_nothing_heavy(arguments):
+    heavy = {"numba", "matplotlib", "xarray", "netCDF4", "mpi4py", "scipy", "pandas"}
+    code = (
+        "import sys\nfrom rfmpm.cli import app\n"
+        f"try: app({arguments!r})\nexcept SystemExit as end: assert end.code == 0\n"
+        f"print('loaded:', sorted({heavy!r} & sys.modules.keys()))"
+    )
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    assert process.stdout.splitlines()[-1] == "loaded: []"
+
+
+# --- public names of the package
+
+
+def test_public_names_are_found_and_others_are_not():
+    assert {"Study", "StudyError", "load_study", "simulate", "run_ensemble"} <= set(dir(rfmpm))
+    assert rfmpm.Study is Study
+    with pytest.raises(AttributeError, match="no attribute 'realize_fields'"):
+        _ = rfmpm.realize_fields
+
+
+def test_python_functions_take_anything_that_is_a_study(replace, campaign, tmp_path):
+    replace(
+        "realisation",
+        prepare=lambda study: study,
+        simulate=lambda prepared, index, **options: (prepared, index, options),
+        realise_fields=lambda study, index, level: (study, index, level),
+    )
+    study = rfmpm.load_study(RANDOM)
+    assert rfmpm.simulate(RANDOM, index=2, frames=3) == (study, 2, {"level": 0, "frames": 3, "homogeneous": False})
+    assert rfmpm.realise_fields(RANDOM, index=1) == (study, 1, 0)
+    rfmpm.run_ensemble(RANDOM, realisations=32, directory=tmp_path, workers=1)
+    assert campaign.study.study.realisations == 32
+    assert campaign.directory == tmp_path
+    assert campaign.options == {"realisations": 32, "workers": 1, "fresh": False}
+    with pytest.raises(rfmpm.StudyError, match=r"study\.realisations = 0"):
+        rfmpm.run_ensemble(study, realisations=0)
