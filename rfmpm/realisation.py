@@ -65,6 +65,14 @@ def prepare(study, store: Path | None = None) -> Prepared:
     return Prepared(study, scene, prepared)
 
 
+def compile_kernels(prepared: Prepared) -> None:
+    """Compile what the study needs, or load it from the cache, so that no realisation has to."""
+    scene = prepared.scene
+    points, law, past, grid = scenes.release(scene, None)
+    advance = SOLVERS[prepared.study.time.scheme]
+    advance(start(), 0.0, points, law, past, scene.axes, grid, scene.walls, scene.controls)
+
+
 def realise_fields(study, index: int, level: int = 0) -> dict[str, np.ndarray]:
     """Make the random fields of one realisation alone.
 
@@ -76,7 +84,7 @@ def realise_fields(study, index: int, level: int = 0) -> dict[str, np.ndarray]:
     Returns:
         Field by name, shape (n,) each, in SI units; empty for a homogeneous study.
     """
-    return _fields(prepare(study), index, level, None)
+    return _fields(prepare(study), index, level, xi=None)
 
 
 def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = None) -> dict[str, Any]:
@@ -103,9 +111,7 @@ def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = 
     return row
 
 
-def simulate(
-    prepared: Prepared, index: int = 0, level: int = 0, frames: int = 0, homogeneous: bool = False
-) -> Outcome:
+def simulate(prepared: Prepared, index: int = 0, level: int = 0, frames: int = 0, homogeneous: bool = False) -> Outcome:
     """Simulate one realisation and keep its points, histories and, if asked, snapshots.
 
     Args:

@@ -146,7 +146,7 @@ VARIABLES = _table(
         "float64",
         "m",
         "height of the final ground surface",
-        {"comment": "Highest ground in each bin, above the base; missing where a realisation failed."},
+        {"comment": "Highest ground in each bin, above the base; 0 where the base is bare, missing where it failed."},
         _has_surface,
     ),
 )

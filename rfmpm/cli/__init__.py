@@ -188,9 +188,9 @@ def estimate(study: StudyFile) -> None:
     from rfmpm.study import load_study
 
     settings = load_study(study)
-    from rfmpm import realisation
+    from rfmpm import cost
 
-    print_table(cost_row(key, value) for key, value in realisation.estimate_cost(settings).items())
+    print_table(cost_row(key, value) for key, value in cost.estimate(settings).items())
 
 
 @command
@@ -209,7 +209,7 @@ def report(
 @command
 def warmup() -> None:
     """Compile and cache every kernel."""
-    from rfmpm import realisation
+    from rfmpm import cost
 
-    realisation.warmup()
-    typer.echo("every kernel is compiled and cached")
+    for ready in cost.warmup():
+        typer.echo(ready)

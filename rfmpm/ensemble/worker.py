@@ -97,6 +97,7 @@ class Worker:
         if self.prepared is None:
             with self.stop.interruptible():
                 self.prepared = realisation.prepare(self.study, store=self.directory / WORK)
+                realisation.compile_kernels(self.prepared)
 
     def work(self, rank: int, claim: Claim) -> None:
         """Run what `claim` hands out until there is nothing left or a signal comes; every finished row is written.

@@ -1,6 +1,6 @@
 """The one door to Numba, and the small tensors every kernel uses. Knows no physics."""
 
-from rfmpm.kernel_tools.jit import at, cache_folder, generic, inlined, kernel, put
+from rfmpm.kernel_tools.jit import at, cache_folder, generic, inlined, kernel, part, put
 from rfmpm.kernel_tools.nodes import gather, gather_slopes, scatter, scatter_scalar, scatter_slopes
 from rfmpm.kernel_tools.tensors import Tensor, Vector
 
@@ -14,6 +14,7 @@ __all__ = [
     "generic",
     "inlined",
     "kernel",
+    "part",
     "put",
     "scatter",
     "scatter_scalar",

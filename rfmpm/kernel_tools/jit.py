@@ -98,6 +98,15 @@ def put(record, index, values):
             field[index] = value
 
 
+def part(record, first, last):
+    """View of the points or nodes first, ..., last - 1 of a record, records within it too; the rest passes through."""
+    if isinstance(record, np.ndarray):
+        return record[first:last]
+    if isinstance(record, tuple):
+        return type(record)(*(part(f, first, last) for f in record))
+    return record
+
+
 @overload(at, **inline_options)
 def _at(record, index):
     if isinstance(record, types.NoneType):
@@ -119,6 +128,27 @@ def _put(record, index, values):
         if isinstance(kind, types.Array)
     ]
     return _define("put", "\n".join(["def put(record, index, values):", *lines, "    return"]), record)
+
+
+@overload(part, **inline_options)
+def _part(record, first, last):
+    classes = {}
+    view = _view("record", record, classes)
+    namespace = dict(classes)
+    exec(f"def part(record, first, last):\n    return {view}", namespace)
+    return namespace["part"]
+
+
+def _view(name, kind, classes):
+    """Expression for `part` of what is called `name` and has that Numba type; notes the record classes it needs."""
+    if isinstance(kind, types.Array):
+        return f"{name}[first:last]"
+    if not isinstance(kind, types.BaseNamedTuple):
+        return name
+    label = f"cls{len(classes)}"
+    classes[label] = kind.instance_class
+    fields = zip(kind.fields, kind.types, strict=True)
+    return f"{label}({', '.join(_view(f'{name}.{field}', inner, classes) for field, inner in fields)})"
 
 
 def _define(name, source, record):

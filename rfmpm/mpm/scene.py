@@ -18,7 +18,7 @@ from rfmpm.mpm.state import Axes, Grid, Points, copy_points
 
 GRAVITY = 9.81  # [m/s2]
 
-FILTER_INTERVAL = 4  # steps; the filter acts at a rate, so this only spreads its cost
+FILTER_INTERVAL = 8  # steps; the filter acts at a rate, so this only spreads its cost
 REST_FRACTION, REST_TIME = 1e-3, 1.0
 GROWTH_LIMIT = 0.05
 

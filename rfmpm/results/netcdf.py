@@ -2,7 +2,6 @@
 
 import contextlib
 import hashlib
-import math
 import os
 import secrets
 from collections.abc import Mapping, Sequence
@@ -39,7 +38,7 @@ def dataset(rows: Sequence[Mapping[str, Any]], study, attributes: Mapping[str, A
 
     Raises:
         KeyError: if a row lacks an active variable.
-        ValueError: if two rows have surfaces of different length.
+        ValueError: if a surface has another number of bins than the domain.
     """
     import xarray as xr
 
@@ -53,7 +52,7 @@ def dataset(rows: Sequence[Mapping[str, Any]], study, attributes: Mapping[str, A
     for variable in active:
         if variable.dims == ("realisation", "x"):
             data[variable.name] = _surfaces([row[variable.name] for row in rows], study)
-            coordinates["x"] = (np.arange(data[variable.name].shape[1]) + 0.5) * study.output.surface_bin_m
+            coordinates["x"] = _bin_centres(study)
         else:
             data[variable.name] = _column(variable, [row[variable.name] for row in rows])
     labelled = xr.Dataset(
@@ -98,26 +97,15 @@ def _column(variable: Variable, values: list) -> np.ndarray:
 
 
 def _surfaces(values: list, study) -> np.ndarray:
-    sizes = {np.size(value) for value in values if np.ndim(value)}
-    if len(sizes) > 1:
-        raise ValueError(f"surfaces of different lengths: {sorted(sizes)}")
-    size = sizes.pop() if sizes else surface_bin_count(study)
-    return np.array([np.broadcast_to(np.asarray(value, "float64"), size) for value in values]).reshape(-1, size)
+    count = len(_bin_centres(study))
+    return np.array([np.broadcast_to(np.asarray(value, "float64"), count) for value in values]).reshape(-1, count)
 
 
-def surface_bin_count(study) -> int:
-    """Count the bins of the final surface; the last one may reach beyond the domain.
+def _bin_centres(study) -> np.ndarray:
+    from rfmpm.mpm.scene import domain_size
+    from rfmpm.quantities.surface import bin_centres
 
-    Args:
-        study: the study, with output.surface_bin_m.
-
-    Returns:
-        Number of bins [-].
-    """
-    from rfmpm.mpm import scene
-
-    length, _ = scene.domain_size(study)
-    return math.ceil(length / study.output.surface_bin_m - 1e-9)
+    return bin_centres(domain_size(study)[0], study.output.surface_bin_m)
 
 
 def content_hash(ensemble: "xr.Dataset") -> str:

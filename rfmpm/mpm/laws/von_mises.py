@@ -8,7 +8,6 @@ import numpy as np
 from rfmpm.kernel_tools import Tensor
 from rfmpm.mpm.laws.elastic import hooke, lame_constants
 
-
 THIRD = 1.0 / 3.0
 
 

@@ -62,13 +62,13 @@ def step(now, points, law, history, axes, grid, walls, controls):
         clear(grid.mass, box)
         clear(grid.sums, box)
         moved = carry_points(points, law, history, axes, grid, None, blend, grid.straining, dt)
-    kinetic, fall, work, fastest, first_column, last_column, first_row, last_row, culprit = moved
+    kinetic, fall, work, fastest, touched, culprit = moved
     peak = max(now.peak_kinetic, kinetic)
     quiet = now.quiet_time + dt if kinetic < controls.rest_fraction * peak else 0.0
     after = Progress(
         now.status, now.time + dt, now.step_count + (dt > 0.0), kinetic, peak, quiet, since_filter, fastest**0.5,
         now.gravity_work + controls.gravity * fall, now.stress_work + work, now.friction_work + friction,
-        now.grid_gain + gain, first_column, last_column, first_row, last_row, culprit,
+        now.grid_gain + gain, touched[0], touched[1], touched[2], touched[3], culprit,
     )  # fmt: skip
     return judge(after, points, controls)
 

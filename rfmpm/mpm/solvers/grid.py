@@ -60,12 +60,12 @@ def subtract_second_projection(grid, box):
     for row in range(box[2], box[3] + 1):
         for column in range(box[0], box[1] + 1):
             m = grid.mass[row, column]
-            on_wall = row == 0 or column == 0 or column == last_column
-            for k in range(2):
-                v = grid.flow[row, column, k]
-                if m > 0.0 and not on_wall:
-                    v = 2.0 * v - grid.filtered[row, column, k] / m
-                grid.filtered[row, column, k] = v
+            vx, vy = grid.flow[row, column, X], grid.flow[row, column, Y]
+            if m > 0.0 and row > 0 and 0 < column < last_column:
+                inverse = 1.0 / m
+                vx = 2.0 * vx - grid.filtered[row, column, X] * inverse
+                vy = 2.0 * vy - grid.filtered[row, column, Y] * inverse
+            grid.filtered[row, column, X], grid.filtered[row, column, Y] = vx, vy
 
 
 @kernel

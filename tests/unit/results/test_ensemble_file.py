@@ -79,8 +79,8 @@ def test_missing_variable_is_an_error_that_names_it(study):
         results.dataset([row], study)
 
 
-def test_surfaces_of_different_length_are_an_error(study):
-    with pytest.raises(ValueError, match="different lengths"):
+def test_surface_with_another_number_of_bins_is_an_error(study):
+    with pytest.raises(ValueError, match=f"{BINS + 1}"):
         results.dataset([finished_row(0), finished_row(1, final_surface=np.zeros(BINS + 1))], study)
 
 
