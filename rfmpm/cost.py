@@ -35,7 +35,7 @@ def estimate(study: Study) -> dict[str, int | float]:
     realisation.compile_kernels(prepared)
     scene = prepared.scene
     controls = scene.controls
-    time_step = controls.step_fraction * controls.cell / controls.wave_speed
+    time_step = controls.courant * controls.cell / controls.wave_speed
     steps = ceil(study.time.end_s / time_step)
     per_realisation = _seconds_per_step(prepared, time_step) * steps
     workers = min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,

@@ -100,7 +100,7 @@ def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = 
         Every active variable by name; a numerical failure is a status with a reason, and its quantities are NaN.
     """
     outcome = _simulate(prepared, _fields(prepared, index, level, xi), frames=0)
-    row = outcome.quantities | {
+    return outcome.quantities | {
         "realisation": index,
         "level": level,
         "status": STATUS[outcome.status],
@@ -108,7 +108,6 @@ def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = 
         "step_count": outcome.step_count,
         "wall_time": outcome.wall_time,
     }
-    return row
 
 
 def simulate(prepared: Prepared, index: int = 0, level: int = 0, frames: int = 0, homogeneous: bool = False) -> Outcome:

@@ -28,7 +28,7 @@ class Friction(NamedTuple):
         """Stop what moves into the wall; oppose what slides with at most `coefficient` times the force into it."""
         if inward + push >= 0.0:
             return inward, along, inward + push, along + drag
-        hold, slide = self.coefficient * max(0.0, -push), along + drag
+        hold, slide = -self.coefficient * (inward + push), along + drag
         if slide > hold:
             return 0.0, along, 0.0, slide - hold
         if slide < -hold:

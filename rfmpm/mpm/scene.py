@@ -63,7 +63,7 @@ def build(study) -> Scene:
         gravity=GRAVITY,
         cell=cell,
         wave_speed=sqrt((lame + 2.0 * shear) / density),
-        step_fraction=study.time.step_fraction,
+        courant=study.time.step_fraction * axis.COURANT,
         dissipation_time=study.discretisation.dissipation_time_s,
         filter_interval=FILTER_INTERVAL,
         rest_fraction=REST_FRACTION,

@@ -38,11 +38,16 @@ def block_study(width, height, foreland, cell=0.25, base="roller", **changes) ->
     return study.with_changes({key.replace("__", "."): value for key, value in changes.items()})
 
 
-def launched(scene, shift=(0.0, 0.0), velocity=(0.0, 0.0), stress=(0.0, 0.0, 0.0, 0.0), gravity=None, **controls):
+def launched(
+    scene, shift=(0.0, 0.0), velocity=(0.0, 0.0), stress=(0.0, 0.0, 0.0, 0.0), gravity=None, height=None, **controls
+):
     """The scene with its points elsewhere, with other velocities and stresses (uniform or one per point).
 
-    `stress` None: elastic stresses under gravity where the points then are.
+    `stress` None: elastic stresses under gravity where the points then are. `height`: of the domain [m].
     """
+    if height is not None:
+        rows = round(height * scene.axes.y.inverse_cell)
+        scene = replace(scene, axes=scene.axes._replace(y=scene.axes.y._replace(cells=rows)))
     first = scene.points
     position = Vector(first.position.x + shift[0], first.position.y + shift[1])
     if gravity is not None:

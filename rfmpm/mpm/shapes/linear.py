@@ -6,6 +6,8 @@ from typing import NamedTuple
 class Linear(NamedTuple):
     """Two nodes along one axis of `cells` cells between two walls."""
 
+    COURANT = 1.0  # wave speed times critical time step over cell: an elastic block stays stable at this value
+
     inverse_cell: float  # [1/m]
     cells: int
 

@@ -11,6 +11,8 @@ class QuadraticBSpline(NamedTuple):
     wall, so that the wall's own value is met exactly there.
     """
 
+    COURANT = 0.8  # wave speed times critical time step over cell: an elastic block is stable at 0.8, not at 0.9
+
     inverse_cell: float  # [1/m]
     cells: int
 

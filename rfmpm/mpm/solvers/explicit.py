@@ -15,7 +15,7 @@ class Controls(NamedTuple):
     gravity: float  # [m/s2]
     cell: float  # [m]
     wave_speed: float  # of compression, the largest of the scene [m/s]
-    step_fraction: float  # of the critical time step [-]
+    courant: float  # wave speed plus point speed, times time step, over cell [-]
     dissipation_time: float  # time in which velocities relax to the filtered grid velocity [s]
     filter_interval: int  # steps from one application of the filter to the next
     rest_fraction: float  # of the largest kinetic energy, below which a scene counts as quiet [-]
@@ -35,7 +35,7 @@ def step(now, points, law, history, axes, grid, walls, controls):
     dt, since_filter, blend, filtering = 0.0, 0.0, 0.0, False
     gain = friction = 0.0
     if now.last_row >= 0:
-        dt = controls.step_fraction * controls.cell / (controls.wave_speed + now.fastest)
+        dt = controls.courant * controls.cell / (controls.wave_speed + now.fastest)
         since_filter = now.since_filter + dt
         filtering = now.step_count % controls.filter_interval == 0 and controls.dissipation_time < inf
         gain, friction = update_grid(grid, walls, box, controls.gravity, dt)

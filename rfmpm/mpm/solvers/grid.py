@@ -33,19 +33,19 @@ def update_grid(grid, walls, box, gravity, dt):
     for row in range(box[2], box[3] + 1):
         for column in range(box[0], box[1] + 1):
             m = grid.mass[row, column]
-            old_x = old_y = vx = vy = 0.0
+            mapped_x = mapped_y = vx = vy = 0.0
             if m > 0.0:
                 inverse = 1.0 / m
-                old_x, old_y = grid.sums[row, column, X] * inverse, grid.sums[row, column, Y] * inverse
+                mapped_x, mapped_y = grid.sums[row, column, X] * inverse, grid.sums[row, column, Y] * inverse
                 push_x = dt * grid.sums[row, column, FORCE_X] * inverse
                 push_y = dt * (grid.sums[row, column, FORCE_Y] * inverse - gravity)
-                vx, vy = old_x + push_x, old_y + push_y
+                old_x, old_y, vx, vy = mapped_x, mapped_y, mapped_x + push_x, mapped_y + push_y
                 if row == 0 or column == 0 or column == last_column:
                     old_x, old_y, vx, vy = apply_walls(walls, old_x, old_y, push_x, push_y, row, column, last_column)
                     friction += 0.5 * m * ((old_x + push_x - vx) * (old_x + vx) + (old_y + push_y - vy) * (old_y + vy))
                 gain += 0.5 * m * (vx * vx + vy * vy - old_x * old_x - old_y * old_y)
             grid.flow[row, column, X], grid.flow[row, column, Y] = vx, vy
-            grid.flow[row, column, CHANGE_X], grid.flow[row, column, CHANGE_Y] = vx - old_x, vy - old_y
+            grid.flow[row, column, CHANGE_X], grid.flow[row, column, CHANGE_Y] = vx - mapped_x, vy - mapped_y
     return gain, friction
 
 
