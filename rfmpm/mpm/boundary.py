@@ -25,7 +25,7 @@ class Friction(NamedTuple):
     coefficient: float  # [-]
 
     def constrain(self, inward, along, push, drag):
-        """Stop what moves into the wall; oppose what slides with at most `coefficient` times the force into it."""
+        """Stop what moves into the wall; oppose what slides with at most `coefficient` times the impulse of that."""
         if inward + push >= 0.0:
             return inward, along, inward + push, along + drag
         hold, slide = -self.coefficient * (inward + push), along + drag

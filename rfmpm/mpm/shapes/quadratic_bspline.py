@@ -21,7 +21,7 @@ class QuadraticBSpline(NamedTuple):
         s, k = x * self.inverse_cell, self.inverse_cell
         if s < 0.5:
             return 0, (1.0 - s, s, 0.0), (-k, k, 0.0)
-        if s > self.cells - 0.5:
+        if s >= self.cells - 0.5:
             t = self.cells - s
             return self.cells - 2, (0.0, t, 1.0 - t), (0.0, -k, k)
         i = int(s - 0.5)

@@ -26,6 +26,8 @@ def apply_walls(walls, vx, vy, push_x, push_y, row, column, last_column):
 def update_grid(grid, walls, box, gravity, dt):
     """Solve m dv/dt = f - m g on the touched nodes, within what the walls allow.
 
+    The change of velocity that goes back to the points includes what the walls took of the mapped momentum.
+
     Returns (gain of kinetic energy, work taken by the walls), both [J/m].
     """
     gain = friction = 0.0
