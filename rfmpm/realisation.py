@@ -123,6 +123,7 @@ def simulate(prepared: Prepared, index: int = 0, level: int = 0, frames: int = 0
     Returns:
         The outcome.
     """
+    compile_kernels(prepared)
     return _simulate(prepared, {} if homogeneous else _fields(prepared, index, level, None), frames)
 
 

@@ -1,8 +1,8 @@
 """Sums over the nodes around a point, four values of a node at a time.
 
-Every node array has shape (rows, columns, 4), so that the values of one node fill one vector register. Numba's own loops
-come out scalar here; these few functions write the vector instructions down, with the same sums in plain Python below
-for runs without compilation.
+Every node array has shape (rows, columns, 4), so that the values of one node fill one vector register. Numba's own
+loops come out scalar here; these few functions write the vector instructions down, with the same sums in plain Python
+below for runs without compilation.
 """
 
 import numpy as np

@@ -9,7 +9,7 @@ from rfmpm.report.snapshots import Snapshot
 from rfmpm.report.style import GREY, STRAIN_MAP, Picture, drawing, encode, new_figure
 
 WIDTH = 8.6  # inches
-WIDEST_COLOUR_SPAN = 98.0  # percentile of plastic strain at the end of the colours; a few points strain far more
+WIDEST_COLOUR_SPAN = 80.0  # percentile of the yielded points at the end of the colours, so that narrow bands show
 
 
 def slope_pictures(snapshots: Sequence[Snapshot], outline: np.ndarray) -> list[Picture]:

@@ -1,6 +1,7 @@
 """Elastic blocks, anywhere in their domain and moving as a test wants."""
 
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 import pytest
@@ -14,14 +15,14 @@ from rfmpm.mpm.state import Points, start
 from rfmpm.study import Study
 
 
-def block_study(width, height, foreland, cell=0.25, base="roller", **changes) -> Study:
-    """Study of an elastic block between rollers; `changes` by dotted path, with `__` for the dots."""
+def block_study(width, height, foreland, cell=0.25, base=None, **changes) -> Study:
+    """Study of an elastic block between rollers, or on another `base`; `changes` by dotted path, with `__` for the dots."""
     study = rfmpm.load_study(
         {
             "study": {"name": "elastic block", "seed": 1},
             "geometry": {"kind": "block", "width_m": width, "height_m": height, "foreland_m": foreland},
             "discretisation": {"cell_m": cell, "points_per_cell": 4, "shape": "quadratic_bspline"},
-            "boundary": {"base": {"kind": base}, "sides": {"kind": "roller"}},
+            "boundary": {"base": base or {"kind": "roller"}, "sides": {"kind": "roller"}},
             "material": [
                 {
                     "name": "rubber",
@@ -43,8 +44,10 @@ def launched(
 ):
     """The scene with its points elsewhere, with other velocities and stresses (uniform or one per point).
 
-    `stress` None: elastic stresses under gravity where the points then are. `height`: of the domain [m].
+    `stress` None: elastic stresses under gravity where the points then are. `height`: of the domain [m]. It neither
+    ends at rest nor for its energy, which the engine counts from a start at rest.
     """
+    controls = {"energy_scale": inf, "rest_time": inf} | controls
     if height is not None:
         rows = round(height * scene.axes.y.inverse_cell)
         scene = replace(scene, axes=scene.axes._replace(y=scene.axes.y._replace(cells=rows)))

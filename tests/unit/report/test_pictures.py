@@ -51,7 +51,7 @@ def test_animation_has_every_frame_and_a_simulation_without_frames_is_an_error(t
 def test_colours_end_at_a_high_percentile_of_the_yielded_points():
     assert strain_limit([np.zeros(10), np.array([np.nan])]) == 1.0
     strain = np.concatenate([np.zeros(1000), np.linspace(0.01, 1.0, 100), [50.0]])
-    assert 0.9 < strain_limit([strain]) <= 1.1
+    assert 0.75 < strain_limit([strain]) <= 0.85  # 80 % of the yielded points
 
 
 def test_markers_fill_the_body_and_points_beyond_the_colours_are_announced(study):
