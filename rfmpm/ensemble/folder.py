@@ -220,6 +220,11 @@ class Journal:
         """When the campaign was first started, ISO 8601."""
         return next(event["time"] for event in self.events() if event["event"] == "start")
 
+    def ended(self) -> str:
+        """When the last rows were written, ISO 8601."""
+        written = [event["time"] for event in self.events() if event["event"] == "segment"]
+        return written[-1] if written else self.started()
+
     def fatal_starts(self) -> Counter[int]:
         """Count, for each realisation, the workers that died while they ran it."""
         return Counter(

@@ -134,7 +134,7 @@ def _what_is_left(total: int, missing: list[int], losses: list[str]) -> str:
 
 def _finish(study, directory: Path, rows: list[segments.Row], journal) -> "xr.Dataset":
     path = directory / results.ENSEMBLE_FILE
-    merged = results.dataset(rows, study, {"start": journal.started(), "end": folder.now()})
+    merged = results.dataset(rows, study, {"start": journal.started(), "end": journal.ended()})
     results.write_dataset(path, merged)
     shutil.rmtree(directory / folder.WORK, ignore_errors=True)
     journal.write("stop", complete=True, content_hash=merged.attrs["content_hash"])

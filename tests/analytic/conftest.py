@@ -16,7 +16,7 @@ from rfmpm.study import Study
 
 
 def block_study(width, height, foreland, cell=0.25, base=None, **changes) -> Study:
-    """Study of an elastic block between rollers, or on another `base`; `changes` by dotted path, with `__` for the dots."""
+    """Study of an elastic block between rollers, or on another base; changes by path, with `__` for the dots."""
     study = rfmpm.load_study(
         {
             "study": {"name": "elastic block", "seed": 1},

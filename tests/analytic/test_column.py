@@ -29,8 +29,8 @@ def test_one_point_per_cell_has_the_exact_stress(blocks, shape):
 @every_shape
 @pytest.mark.parametrize("points", [4, 9])
 def test_stress_is_unit_weight_times_depth(blocks, shape, points):
-    # Points feel the stress their interpolation can carry: linear shapes are constant in a cell (a third of a cell off), and
-    # B-splines within half a cell of the base; near the top the grid ends in the air.
+    # Points feel the stress their interpolation can carry: linear shapes have one in a cell (a third of a cell off for
+    # 9 points), B-splines one within half a cell of the base; near the top the grid ends in the air.
     assert stress_error(column(blocks, points=points, shape=shape)) < {"linear": 0.34, "quadratic_bspline": 0.2}[shape]
 
 

@@ -23,5 +23,14 @@ def test_journal_counts_deaths_since_the_last_fresh_start_and_survives_a_torn_li
     assert journal.started() == json.loads(journal.path.read_text().splitlines()[2])["time"]
 
 
+def test_a_campaign_ended_when_its_last_rows_were_written_and_not_when_it_was_asked_for_again(tmp_path):
+    journal = folder.Journal(tmp_path / "journal.jsonl")
+    journal.write("start", fresh=False)
+    assert journal.ended() == journal.started()
+    for event in ("segment", "segment", "start", "stop"):
+        journal.write(event)
+    assert journal.ended() == json.loads(journal.path.read_text().splitlines()[2])["time"]
+
+
 def test_journal_without_a_file_is_empty(tmp_path):
     assert folder.Journal(tmp_path / "journal.jsonl").events() == []
