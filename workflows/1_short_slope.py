@@ -25,6 +25,7 @@ REPORTS = ROOT / "reports"
 COMMAND = "python workflows/1_short_slope.py"
 RUNS = [(12.0, 50.0), (8.0, 50.0), (4.0, 50.0), (4.0, 25.0), (4.0, 75.0)]  # residual cohesion, softening modulus [kPa]
 STEP_FRACTIONS = (0.1, 0.2, 0.4, 0.8)
+CELLS = (0.5, 0.25, 0.125)  # [m]
 PICTURED = 6  # realisation at the top of the README: a retrogressive slide in which blocks can be told apart
 
 
@@ -52,7 +53,8 @@ def five_runs(study) -> str:
         lines.append(
             f"| {c:g} | {h:g} | {q['run_out']:.2f} | {reach} | {q['failure_volume']:.1f} "
             f"| {q['initial_failure_volume']:.1f} | {q['block_count']} | {rest} "
-            f"| {100 * q['numerical_dissipation_share']:.1f} % | {100 * q['energy_balance_error']:.1f} % | {speed:.0f} |"
+            f"| {100 * q['numerical_dissipation_share']:.1f} % | {100 * q['energy_balance_error']:.1f} % "
+            f"| {speed:.0f} |"
         )
     return "\n".join(lines)
 
@@ -72,6 +74,25 @@ def time_steps(study) -> str:
         ]
         span = 100 * np.ptp(found) / np.mean(found)
         lines.append(f"| {c:g} | " + " | ".join(f"{r:.3f} m" for r in found) + f" | {span:.1f} % |")
+    return "\n".join(lines)
+
+
+def cells(study) -> str:
+    """Table of run-out and retrogression against the cell size."""
+    lines = [
+        "| residual cohesion [kPa] | " + " | ".join(f"cell {h:g} m" for h in CELLS) + " |",
+        "|---" * (len(CELLS) + 1) + "|",
+    ]
+    for c in (4.0, 8.0, 12.0):
+        found = [
+            simulate(study, material__0__residual_cohesion_kpa=c, discretisation__cell_m=h, time__end_s=25.0).quantities
+            for h in CELLS
+        ]
+        lines.append(
+            f"| {c:g}: run-out, retrogression | "
+            + " | ".join(f"{q['run_out']:.1f}, {q['retrogression_distance']:.1f} m" for q in found)
+            + " |"
+        )
     return "\n".join(lines)
 
 
@@ -118,6 +139,12 @@ Numerical dissipation and energy error are shares of the work of gravity. Times 
 ## Run-out against the time step
 
 {time_steps(study)}
+
+## Run-out and retrogression against the cell size
+
+{cells(study)}
+
+The crest is 10 m wide: a retrogression of 9.9 m has reached the back of the model. Softening is scaled with the cell.
 """
     (REPORTS / "short_slope.md").write_text(text, encoding="utf-8")
     campaign()

@@ -46,7 +46,7 @@ def test_short_slope_is_the_published_scene(short_slope):
     position, volume = fill(shape.outline, study.discretisation.cell_m, study.discretisation.points_per_cell)
     # 20 x 40 cells below the crest of 4 points; in the triangle 190 whole cells of 4 and 20 half cells of 3.
     assert len(position) == len(volume) == 4 * (800 + 190) + 3 * 20 == 4020
-    # Eighths of a cell and their halves are exact in binary.
+    # Exact: spacings and volumes are powers of two.
     assert volume.sum() == 62.5
     spacing = 0.125
     assert set(volume.tolist()) == {spacing**2, 0.5 * spacing**2}
@@ -121,14 +121,11 @@ def test_points_come_row_by_row_of_cells_from_the_base(points_per_cell):
     assert np.all(np.diff(row * 1000.0 + column) >= 0.0)
 
 
-SQUARE_AREA_AND_CENTRE = (1.0, (0.5, 0.5))
-
-
 @pytest.mark.parametrize(
     ("polygon", "area", "centre"),
     [
         (UNIT_SQUARE, 1.0, (0.5, 0.5)),
-        (UNIT_SQUARE + (0.5, 0.25), 0.375, (0.75, 0.625)),
+        (UNIT_SQUARE + np.array((0.5, 0.25)), 0.375, (0.75, 0.625)),
         (0.5 * UNIT_SQUARE + (0.25, 0.25), 0.25, (0.5, 0.5)),  # inside: kept whole
         (4.0 * UNIT_SQUARE - (1.0, 1.0), 1.0, (0.5, 0.5)),  # around: the outline itself
         (np.array([(0.0, 0.0), (2.0, 0.0), (0.0, 2.0)]), 1.0, (0.5, 0.5)),  # the corner (1, 1) on its edge

@@ -4,7 +4,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rfmpm.quantities import QUANTITIES, FinalState
@@ -13,6 +13,8 @@ from rfmpm.quantities import QUANTITIES, FinalState
 ABSOLUTE = {"retrogression_censored", "final_surface"}
 ALONG_X = ("x", "x_initial", "toe", "crest_edge", "length")
 PER_POINT = tuple(field.name for field in fields(FinalState) if field.type is np.ndarray)
+
+few = settings(deadline=None, max_examples=40)
 
 # Eighths, so that shifting them by whole cells rounds nothing and the tests can ask for equality.
 eighths = st.integers(1, 63).map(lambda eighth: eighth / 8.0)
@@ -35,6 +37,7 @@ def toys(draw):
 
 
 @pytest.mark.parametrize("name", [name for name in QUANTITIES if name not in ABSOLUTE])
+@few
 @given(toy=toys(), cells=st.integers(0, 1000))
 def test_shifting_everything_by_whole_cells_changes_nothing(name, toy, cells):
     shift = cells * toy.cell
@@ -42,6 +45,7 @@ def test_shifting_everything_by_whole_cells_changes_nothing(name, toy, cells):
     assert QUANTITIES[name](shifted) == QUANTITIES[name](toy)
 
 
+@few
 @given(toy=toys(), bins=st.integers(0, 100))
 def test_surface_shifts_with_the_scene(toy, bins):
     shifted = replace(toy, **{field: getattr(toy, field) + bins * toy.surface_bin for field in ALONG_X})
@@ -50,6 +54,7 @@ def test_surface_shifts_with_the_scene(toy, bins):
 
 
 @pytest.mark.parametrize("name", QUANTITIES)
+@few
 @given(toy=toys(), seed=st.integers(0, 99))
 def test_order_of_the_points_has_no_say(name, toy, seed):
     order = np.random.default_rng(seed).permutation(len(toy.x))
