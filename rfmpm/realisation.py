@@ -12,11 +12,10 @@ from rfmpm import seeds
 from rfmpm.mpm import scene as scenes
 from rfmpm.mpm.solvers import SOLVERS
 from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNING, Progress, start
-from rfmpm.quantities import QUANTITIES, FinalState, first_minimum, front
+from rfmpm.observer import Observer, final_state
+from rfmpm.quantities import QUANTITIES, first_minimum
 from rfmpm.random_fields import field as random_field
 from rfmpm.variables import FAILED, STATUS, active_variables
-
-SAMPLE_INTERVAL = 0.1  # [s] of model time from one entry of the histories to the next
 
 
 @dataclass(frozen=True)
@@ -143,7 +142,7 @@ def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int) ->
     started = time.perf_counter()
     study, scene = prepared.study, prepared.scene
     points, law, past, grid = scenes.release(scene, fields.get("cohesion"))
-    observer = _Observer(scene, study, points, past, frames)
+    observer = Observer(scene, study, points, past, frames)
     advance, now = SOLVERS[study.time.scheme], start()
     while now.status == RUNNING and now.time < study.time.end_s:
         until = min(observer.next_sample, study.time.end_s)
@@ -165,60 +164,6 @@ def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int) ->
     )
 
 
-class _Observer:
-    """Looks at a run from time to time: histories, and snapshots if asked."""
-
-    def __init__(self, scene, study, points, past, frames):
-        self.scene, self.study, self.live, self.past, self.wanted = scene, study, points, past, frames
-        names = ("time", "kinetic_energy", "failed_volume") + (("front", "crest") if frames else ())
-        self.history = {name: [] for name in names}
-        self.frames = [(0.0, self.points())] if frames else []
-        self.next_sample = SAMPLE_INTERVAL
-
-    def points(self) -> dict[str, np.ndarray]:
-        """Copy the points' state, by the names of the table of variables."""
-        live, first = self.live, self.scene.points
-        strain = np.zeros_like(live.mass) if self.past is None else self.past.plastic_strain
-        state = {
-            "x": live.position.x,
-            "y": live.position.y,
-            "x_initial": first.position.x,
-            "y_initial": first.position.y,
-            "displacement_x": live.position.x - first.position.x,
-            "displacement_y": live.position.y - first.position.y,
-            "velocity_x": live.velocity.x,
-            "velocity_y": live.velocity.y,
-            **{f"stress_{name}": getattr(live.stress, name) for name in live.stress._fields},
-            "plastic_strain": strain,
-            "volume": live.volume,
-        }
-        return {name: values.copy() for name, values in state.items()}
-
-    def sample(self, now: Progress) -> None:
-        """Add an entry to the histories."""
-        live, body, first = self.live, self.scene.body, self.scene.points
-        moved = np.hypot(live.position.x - first.position.x, live.position.y - first.position.y)
-        failed = moved > self.study.quantities.displacement_threshold_m
-        self.history["time"].append(now.time)
-        self.history["kinetic_energy"].append(now.kinetic)
-        self.history["failed_volume"].append(float(first.volume[failed].sum()))
-        self.next_sample = now.time + SAMPLE_INTERVAL
-        if self.wanted:
-            state = _final_state(self.scene, self.study, self.points())
-            quantile = self.study.quantities.front_quantile
-            self.history["front"].append(
-                front(live.position.x[failed], first.volume[failed], quantile) if failed.any() else body.toe
-            )
-            self.history["crest"].append(body.crest_edge - QUANTITIES["retrogression_distance"](state))
-            self.frames.append((now.time, self.points()))
-
-    def kept_frames(self) -> list[tuple[float, dict[str, np.ndarray]]]:
-        """Choose the snapshots, evenly spread from the first to the last."""
-        if len(self.frames) <= self.wanted:
-            return self.frames
-        return [self.frames[i] for i in np.linspace(0, len(self.frames) - 1, self.wanted).round().astype(int)]
-
-
 def _verdict(now: Progress, study) -> tuple[str, str]:
     """Status of a run that has ended, and its reason in words."""
     speed = f"at {now.time:.3g} s; try a smaller time.step_fraction than {study.time.step_fraction:g}"
@@ -233,26 +178,7 @@ def _verdict(now: Progress, study) -> tuple[str, str]:
     return "not_at_rest", f"still moving at time.end_s = {study.time.end_s:g} s"
 
 
-def _final_state(scene, study, points: dict[str, np.ndarray]) -> FinalState:
-    body, asked = scene.body, study.quantities
-    return FinalState(
-        **{name: points[name] for name in ("x", "y", "x_initial", "y_initial", "volume", "plastic_strain")},
-        volume_initial=scene.points.volume,
-        cell=scene.cell,
-        spacing=scene.cell / np.sqrt(study.discretisation.points_per_cell),
-        toe=body.toe,
-        crest_edge=body.crest_edge,
-        crest_height=body.height,
-        length=body.length,
-        displacement_threshold=asked.displacement_threshold_m,
-        front_quantile=asked.front_quantile,
-        block_plastic_strain=asked.block_plastic_strain,
-        block_minimum_area=asked.block_minimum_area_m2,
-        surface_bin=study.output.surface_bin_m,
-    )
-
-
-def _quantities(prepared: Prepared, points, observer: _Observer, now: Progress, status: str) -> dict[str, Any]:
+def _quantities(prepared: Prepared, points, observer: Observer, now: Progress, status: str) -> dict[str, Any]:
     """Every active quantity by name; NaN for a failed run."""
     study = prepared.study
     names = [variable.name for variable in active_variables(study) if variable.name in QUANTITIES]
@@ -263,7 +189,7 @@ def _quantities(prepared: Prepared, points, observer: _Observer, now: Progress, 
     }
     if status in FAILED:
         return dict.fromkeys((*names, "initial_failure_volume"), nan) | measured
-    state = _final_state(prepared.scene, study, points)
+    state = final_state(prepared.scene, study, points)
     end_of_first_slide = first_minimum(np.array(observer.history["kinetic_energy"]))
     measured["initial_failure_volume"] = observer.history["failed_volume"][end_of_first_slide]
     return {name: QUANTITIES[name](state) for name in names} | measured

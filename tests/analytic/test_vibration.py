@@ -9,7 +9,7 @@ HEIGHT, SPEED, PERIODS = 2.0, 1e-4, 5  # [m], [m/s] at the top
 CELLS = 0.5, 0.25, 0.125  # [m]
 # On B-splines the column swings about its rest under gravity. Linear shapes see a point's volume change but not that it
 # flows out of the cell: the stress at rest lowers their modulus by its share, 0.4 % of the frequency on any grid.
-both_shapes = pytest.mark.parametrize("gravity, shape", [(9.81, "quadratic_bspline"), (0.0, "linear")])
+both_shapes = pytest.mark.parametrize(("gravity", "shape"), [(9.81, "quadratic_bspline"), (0.0, "linear")])
 
 
 class Column:

@@ -14,6 +14,7 @@ FLOORS = {
     6.5: ("rfmpm",),  # the public names
     6: ("ensemble", "report", "cost"),
     5: ("realisation", "results"),
+    4.5: ("observer",),
     4: ("quantities", "estimators", "stability"),
     3: ("mpm.scene", "mpm.solvers", "random_fields.field", "random_fields.statistics"),
     2.5: ("mpm.geometry", "mpm.energy", "mpm.initial_stress", "random_fields.store"),

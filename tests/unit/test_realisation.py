@@ -9,7 +9,8 @@ import pytest
 
 from rfmpm import seeds
 from rfmpm.quantities import QUANTITIES
-from rfmpm.realisation import SAMPLE_INTERVAL, compile_kernels, prepare, realise_fields, run, simulate
+from rfmpm.observer import SAMPLE_INTERVAL
+from rfmpm.realisation import compile_kernels, prepare, realise_fields, run, simulate
 from rfmpm.study import load_study
 from rfmpm.variables import COORDINATES, POINT_VARIABLES, STATUS, active_variables
 

@@ -8,7 +8,7 @@ import numba
 import numpy as np
 import pytest
 
-from rfmpm.kernel_tools import at, cache_folder, generic, kernel, put
+from rfmpm.kernel_tools import at, cache_folder, generic, kernel, part, put
 
 
 class Shape(Protocol):
@@ -46,6 +46,11 @@ class Mixed(NamedTuple):
     count: int
 
 
+class Nested(NamedTuple):
+    mixed: Mixed
+    array: np.ndarray
+
+
 @kernel
 def compiled_area(shape, scale):
     return area(shape, scale)
@@ -65,6 +70,20 @@ def double(record, count):
     for p in range(count):
         one = at(record, p)
         put(record, p, Mixed(2.0 * one.array, -1.0, -1))
+
+
+@kernel
+def double_part(record, first, last):
+    piece = part(record, first, last)
+    for p in range(piece.array.size):
+        piece.array[p] = 2.0 * piece.array[p]
+        piece.mixed.array[p] = piece.mixed.array[p] + piece.mixed.uniform
+    return piece.array.size
+
+
+@kernel
+def part_of_nothing(record):
+    return part(record, 0, 1)
 
 
 @kernel
@@ -101,6 +120,22 @@ def test_put_writes_into_arrays_and_leaves_the_rest(doubled):
     doubled(record, 2)
     assert record.array.tolist() == [2.0, 4.0, 3.0]
     assert (record.uniform, record.count) == (0.5, 4)
+
+
+@pytest.mark.parametrize(
+    "doubled", [double_part, getattr(double_part, "py_func", double_part)], ids=["compiled", "plain"]
+)
+def test_part_is_a_view_of_some_points_in_nested_records_too(doubled):
+    record = Nested(Mixed(np.array([1.0, 2.0, 3.0, 4.0]), 0.5, 7), np.array([10.0, 20.0, 30.0, 40.0]))
+    assert doubled(record, 1, 3) == 2
+    assert record.array.tolist() == [10.0, 40.0, 60.0, 40.0]
+    assert record.mixed.array.tolist() == [1.0, 2.5, 3.5, 4.0]
+
+
+def test_part_passes_what_holds_no_arrays():
+    assert part(Square(2.0), 0, 1) == Square(2.0)
+    assert part(None, 0, 1) is None
+    assert part_of_nothing(None) is None
 
 
 @pytest.mark.parametrize("put_and_read", [put_nothing, getattr(put_nothing, "py_func", put_nothing)])
