@@ -138,7 +138,8 @@ VARIABLES = _table(
         "numerical_dissipation_share",
         "1",
         "share of numerical dissipation",
-        "Energy dissipated by the transfer between points and grid, relative to the work done by gravity.",
+        "Energy dissipated by the transfer between points and grid, relative to the work done by gravity. With linear "
+        "shapes it cannot be told from the error of the energy balance; only the sum of both has a meaning there.",
     ),
     Variable(
         "final_surface",

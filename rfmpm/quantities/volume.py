@@ -19,7 +19,7 @@ def first_minimum(kinetic_energy: np.ndarray) -> int:
         kinetic_energy: history, shape (k,) [J/m].
 
     Returns:
-        Index of the first minimum followed by a rise of at least 5 % of the largest value, else of the last entry.
+        Index of the first minimum between a fall and a rise of 5 % of the largest value or more; else the last index.
     """
     from scipy.signal import find_peaks
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from rfmpm import seeds
-from rfmpm.quantities import QUANTITIES
 from rfmpm.observer import SAMPLE_INTERVAL
+from rfmpm.quantities import QUANTITIES
 from rfmpm.realisation import compile_kernels, prepare, realise_fields, run, simulate
 from rfmpm.study import load_study
 from rfmpm.variables import COORDINATES, POINT_VARIABLES, STATUS, active_variables

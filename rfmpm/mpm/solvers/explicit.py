@@ -20,7 +20,7 @@ class Controls(NamedTuple):
     filter_interval: int  # steps from one application of the filter to the next
     rest_fraction: float  # of the largest kinetic energy, below which a scene counts as quiet [-]
     rest_time: float  # quiet this long is at rest [s]
-    energy_scale: float  # kinetic and elastic energy at the start [J/m]
+    energy_scale: float  # elastic energy at the start, when all points are still [J/m]
     growth_limit: float  # energy out of nothing that ends a run, as a share of the scale and of gravity's work [-]
     second_mapping: bool | None  # True: the grid strains the points after their velocities (MUSL); None: before
 
