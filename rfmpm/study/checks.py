@@ -14,7 +14,8 @@ LARGEST_POINT_COUNT = 5_000_000
 LARGEST_CELL_COUNT = 20_000_000
 LARGEST_BIN_COUNT = 100_000
 LARGEST_CHOLESKY_COUNT = 20_000
-SMALLEST_CELLS = {("slope", "height_m"): 4, ("slope", "crest_m"): 2, ("block", "width_m"): 1, ("block", "height_m"): 1}
+HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION = 0.99  # towards 1 a truncated normal becomes exponential
+SMALLEST_CELLS = {("slope", "height_m"): 4, ("slope", "crest_m"): 2, ("block", "width_m"): 2, ("block", "height_m"): 1}
 
 
 class Unknown(LookupError):
@@ -205,6 +206,14 @@ def _field_has_its_material(known: Known) -> Iterator[Problem]:
             yield _problem(known, key, text)
 
 
+def _truncated_normal_can_spread_so(known: Known) -> Iterator[Problem]:
+    for variable in known["random_field"]:
+        key = f"random_field.{variable}.coefficient_of_variation"
+        highest = HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION
+        if known[f"random_field.{variable}.distribution"] == "normal_truncated" and known[key] >= highest:
+            yield _problem(known, key, f"must be less than {highest:g} for normal_truncated; lognormal allows more")
+
+
 CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _height_fits,
     _width_fits,
@@ -216,4 +225,5 @@ CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _there_is_one_material,
     _names_are_unique,
     _field_has_its_material,
+    _truncated_normal_can_spread_so,
 ]

@@ -11,7 +11,8 @@ import pytest
 from pydantic import ValidationError
 
 import rfmpm
-from rfmpm.study import Study, StudyError, load_study
+from rfmpm.random_fields.marginals import HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION
+from rfmpm.study import Study, StudyError, checks, load_study
 from rfmpm.study.study import NOT_PHYSICS
 
 CONFIGS = Path(__file__).parents[2] / "configs"
@@ -300,8 +301,10 @@ def test_lengths_must_be_whole_numbers_of_cells(study):
 
 
 def test_block_needs_whole_cells_too_and_may_be_confined(study):
-    block = {"kind": "block", "width_m": 0.25, "height_m": 5.0, "foreland_m": 0.0}
+    block = {"kind": "block", "width_m": 0.5, "height_m": 5.0, "foreland_m": 0.0}
     study.with_changes({"geometry": block})
+    (problem,) = problems_of(study, {"geometry": {**block, "width_m": 0.25}})  # three nodes of a spline need two cells
+    assert problem.endswith("at least 2; nearest: 0.5")
     assert problems_of(study, {"geometry": {**block, "width_m": 0.3}})[0].startswith("geometry.width_m = 0.3")
 
 
@@ -332,6 +335,15 @@ def test_field_needs_a_material_with_a_cohesion(study):
     assert problem == 'random_field.cohesion.material = "clsy": names no material; must be "clay"'
     (problem,) = problems_of(study, {"material.0": _elastic(study)})
     assert 'law = "elastic", which has no cohesion' in problem
+
+
+def test_truncated_normal_is_not_asked_for_more_spread_than_it_has(study):
+    assert checks.HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION == HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION
+    changes = {"random_field.cohesion.distribution": "normal_truncated"}
+    spread = "random_field.cohesion.coefficient_of_variation"
+    study.with_changes({**changes, spread: 0.98})
+    (problem,) = problems_of(study, {**changes, spread: 0.99})
+    assert problem.startswith(f"{spread} = 0.99: must be less than 0.99 for normal_truncated")
 
 
 def test_there_is_exactly_one_material_and_names_differ(tables):
