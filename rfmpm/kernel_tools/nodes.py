@@ -13,9 +13,18 @@ from numba.extending import intrinsic, overload
 from rfmpm.kernel_tools.jit import inline_options
 
 LANES = 4
+CACHE_LINE = 8  # numbers
 _DOUBLE = ir.DoubleType()
 _VECTOR = ir.VectorType(_DOUBLE, LANES)
 _FOUR = types.UniTuple(types.float64, LANES)
+
+
+def zeros(rows, columns):
+    """Make a node array of zeros that starts on a cache line, so that no node lies across two."""
+    count = rows * columns * LANES
+    raw = np.zeros(count + CACHE_LINE - 1)
+    first = -(raw.ctypes.data // raw.itemsize) % CACHE_LINE
+    return raw[first : first + count].reshape(rows, columns, LANES)
 
 
 def gather(values, i, wx, j, wy):

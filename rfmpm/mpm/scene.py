@@ -5,7 +5,7 @@ from math import sqrt
 
 import numpy as np
 
-from rfmpm.kernel_tools import Vector
+from rfmpm.kernel_tools import Vector, zeros
 from rfmpm.mpm.boundary import WALLS, Walls
 from rfmpm.mpm.energy import elastic_energy
 from rfmpm.mpm.geometry import Body, body, fill
@@ -92,7 +92,7 @@ def release(scene: Scene, cohesion: np.ndarray | None):
 def empty_grid(axes: Axes) -> Grid:
     """Make the nodes of a grid, all zero."""
     rows, columns = axes.y.cells + 1, axes.x.cells + 1
-    return Grid(np.zeros((rows, columns)), *(np.zeros((rows, columns, 4)) for _ in range(4)))
+    return Grid(np.zeros((rows, columns)), *(zeros(rows, columns) for _ in range(4)))
 
 
 def outline(study) -> np.ndarray:

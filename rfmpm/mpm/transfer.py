@@ -23,7 +23,7 @@ from rfmpm.kernel_tools import (
 from rfmpm.mpm.protocols import update_stress, weights
 from rfmpm.mpm.state import CHANGE_X, CHANGE_Y, X, Y
 
-BLOCK = 128  # points; their data fit the first-level cache
+BLOCK = 512  # points; their data fit the second-level cache
 
 
 @inlined
