@@ -150,7 +150,8 @@ def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int) ->
         observer.sample(now)
     status, reason = _verdict(now, study)
     final = observer.points()
-    final["cohesion"] = np.broadcast_to(getattr(law, "peak", nan), final["x"].shape)
+    cohesion = fields.get("cohesion", getattr(scene.material, "cohesion_kpa", nan) * 1e3)
+    final["cohesion"] = np.broadcast_to(cohesion, final["x"].shape)
     quantities = _quantities(prepared, final, observer, now, status)
     return Outcome(
         quantities,

@@ -149,6 +149,12 @@ def test_fields_are_those_of_the_run(prepared, study):
     assert realise_fields(without_field(study), 6) == {}
 
 
+def test_cohesion_of_the_points_is_the_one_asked_for_in_either_convention(study):
+    changes = {"random_field": {}, "material.0.strength_convention": "sqrt_3j2"}
+    asked = study.material[0].cohesion_kpa * 1e3
+    assert np.all(simulate(prepare(study.with_changes(changes))).points["cohesion"] == asked)
+
+
 def test_simulation_agrees_with_the_row(prepared):
     row, outcome = run(prepared, 3), simulate(prepared, 3)
     assert is_same({name: row[name] for name in outcome.quantities}, outcome.quantities)
