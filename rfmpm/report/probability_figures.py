@@ -50,7 +50,7 @@ def _exceedance(numbers: Numbers) -> Picture:
         curve.at, curve.lower, curve.upper, step="post", color=BLUE, alpha=0.28, lw=0, label=f"{LEVEL} band, each point"
     )
     axes.step(curve.at, curve.value, where="post", color=BLUE, label="estimate")
-    _mark_limit(axes, numbers.limit)
+    _mark(axes, numbers.limit, f"{numbers.limit:g} m", "--")
     axes.set(xlabel="limit l [m]", ylabel="P(run-out > l)", xlim=(curve.at[0], curve.at[-1]), ylim=(-0.02, 1.02))
     _legend_below(figure)
     return Picture(
@@ -112,18 +112,7 @@ def _histogram(values: np.ndarray, label: str, unit: str, bounds: int) -> Pictur
     figure = new_figure(*CHART)
     axes = figure.add_subplot()
     axes.hist(values, bins=edges, color=BLUE, edgecolor="white", linewidth=0.8)
-    axes.axvline(values.mean(), color=VERMILION, lw=1.6)
-    axes.annotate(
-        f"mean {words.number(values.mean())}",
-        (values.mean(), 1.0),
-        xycoords=("data", "axes fraction"),
-        xytext=(0, 3),
-        textcoords="offset points",
-        ha="center",
-        va="bottom",
-        color=VERMILION,
-        fontsize=9,
-    )
+    _mark(axes, values.mean(), f"mean {words.number(values.mean())}", "-")
     axes.yaxis.get_major_locator().set_params(integer=True, min_n_ticks=1)
     axes.grid(axis="x", visible=False)
     axes.set(xlabel=f"{label} [{unit}]", ylabel="realisations")
@@ -204,11 +193,11 @@ def _inundation(numbers: Numbers) -> Picture:
     )
 
 
-def _mark_limit(axes, limit: float) -> None:
-    axes.axvline(limit, color=VERMILION, lw=1.2, ls="--")
+def _mark(axes, x: float, text: str, style: str) -> None:
+    axes.axvline(x, color=VERMILION, lw=1.4, ls=style)
     axes.annotate(
-        f"{limit:g} m",
-        (limit, 1.0),
+        text,
+        (x, 1.0),
         xycoords=("data", "axes fraction"),
         xytext=(0, 3),
         textcoords="offset points",

@@ -161,6 +161,8 @@ def write_dataset(path: Path, labelled: "xr.Dataset") -> None:
         labelled.to_netcdf(temporary, format="NETCDF4", engine="netcdf4")
         flush_to_disk(temporary)
         os.replace(temporary, path)
+    except RuntimeError as error:  # what netCDF4 makes of a full disk
+        raise OSError(f"{path}: cannot be written, is the disk full? ({error})") from error
     finally:
         temporary.unlink(missing_ok=True)
     flush_to_disk(path.parent)

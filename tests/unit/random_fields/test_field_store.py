@@ -53,7 +53,8 @@ def test_the_factor_does_not_depend_on_mean_or_spread(settings, points, tmp_path
     prepare(settings, MEAN, points, tmp_path)
     no_factorisation()
     settings.coefficient_of_variation = 0.5
-    prepare(settings, 2.0 * MEAN, points, tmp_path)
+    prepare(settings, 2.0 * MEAN, points, tmp_path)  # would factorise, which raises, if it looked for another file
+    assert len(list(tmp_path.glob("*.lower.npy"))) == 1
 
 
 @pytest.mark.parametrize(

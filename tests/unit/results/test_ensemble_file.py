@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 from rfmpm import results
+from rfmpm.results import netcdf
 from rfmpm.variables import FAILED, STATUS, VARIABLES, failed_row
 
 BINS = 16  # the coarse domain is 4 + 4 + 8 m long
@@ -149,3 +150,16 @@ def test_file_appears_whole_or_not_at_all(study, rows, tmp_path, monkeypatch):
 def test_incomplete_campaign_is_said_to_be_so(tmp_path):
     with pytest.raises(FileNotFoundError, match="completed"):
         results.open_ensemble(tmp_path)
+
+
+def test_a_full_disk_is_an_os_error_and_leaves_the_old_file_alone(tmp_path):
+    class Unwritable:
+        def to_netcdf(self, path, **options):
+            path.write_bytes(b"half a file")
+            raise RuntimeError("NetCDF: HDF error")  # what netCDF4 raises when the disk is full
+
+    path = tmp_path / "ensemble.nc"
+    path.write_bytes(b"old")
+    with pytest.raises(OSError, match=r"ensemble\.nc: cannot be written, is the disk full"):
+        netcdf.write_dataset(path, Unwritable())
+    assert [(file.name, file.read_bytes()) for file in tmp_path.iterdir()] == [("ensemble.nc", b"old")]
