@@ -1,10 +1,14 @@
 """The one door to Numba, and the small tensors every kernel uses. Knows no physics."""
 
 from rfmpm.kernel_tools.jit import at, cache_folder, generic, inlined, kernel, part, put
-from rfmpm.kernel_tools.nodes import gather, gather_slopes, scatter, scatter_scalar, scatter_slopes, zeros
+from rfmpm.kernel_tools.lanes import lanes, put_lanes
+from rfmpm.kernel_tools.nodes import gather, gather_slopes, scatter, scatter_rows, scatter_slopes, zeros
+from rfmpm.kernel_tools.stencil import BLOCK, Stencil, make_stencil, put_stencil
 from rfmpm.kernel_tools.tensors import Tensor, Vector
 
 __all__ = [
+    "BLOCK",
+    "Stencil",
     "Tensor",
     "Vector",
     "at",
@@ -14,10 +18,14 @@ __all__ = [
     "generic",
     "inlined",
     "kernel",
+    "lanes",
+    "make_stencil",
     "part",
     "put",
+    "put_lanes",
+    "put_stencil",
     "scatter",
-    "scatter_scalar",
+    "scatter_rows",
     "scatter_slopes",
     "zeros",
 ]

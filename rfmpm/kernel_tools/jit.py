@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numba
 import numpy as np
-from numba.core import types
-from numba.extending import overload
+from numba.core import cgutils, types
+from numba.extending import intrinsic, overload
 
 # Contraction lets the compiler fuse a product and a sum into one rounding; it leaves NaN and infinity alone.
 _OPTIONS = {"error_model": "numpy", "fastmath": {"contract"}}
@@ -83,10 +83,10 @@ def generic(declaration):
 
 
 def at(record, index):
-    """Read a record's values at one point or node; uniform values and None pass through."""
-    if record is None:
-        return None
-    return type(record)(*(f[index] if isinstance(f, np.ndarray) else f for f in record))
+    """Read a record's values at one point or node, records and tuples within it too; the rest passes through."""
+    if isinstance(record, np.ndarray):
+        return record[index]
+    return _map(lambda f: at(f, index), record) if isinstance(record, tuple) else record
 
 
 def put(record, index, values):
@@ -96,6 +96,8 @@ def put(record, index, values):
     for field, value in zip(record, values, strict=True):
         if isinstance(field, np.ndarray):
             field[index] = value
+        elif isinstance(field, tuple):
+            put(field, index, value)
 
 
 def part(record, first, last):
@@ -103,55 +105,92 @@ def part(record, first, last):
     if isinstance(record, np.ndarray):
         return record[first:last]
     if isinstance(record, tuple):
-        return type(record)(*(part(f, first, last) for f in record))
+        return _map(lambda f: part(f, first, last), record)
     return record
+
+
+def _map(function, record):
+    fields = [function(f) for f in record]
+    return type(record)(*fields) if hasattr(record, "_fields") else tuple(fields)
 
 
 @overload(at, **inline_options)
 def _at(record, index):
-    if isinstance(record, types.NoneType):
-        return lambda record, index: None
-    picks = ", ".join(
-        f"record.{name}[index]" if isinstance(kind, types.Array) else f"record.{name}"
-        for name, kind in zip(record.fields, record.types, strict=True)
-    )
-    return _define("at", f"def at(record, index):\n    return cls({picks})", record)
+    classes = {}
+    picks = _rebuild("record", record, lambda name: f"{name}[index]", classes)
+    return define("at", f"def at(record, index):\n    return {picks}", classes)
 
 
 @overload(put, **inline_options)
 def _put(record, index, values):
-    if isinstance(record, types.NoneType):
-        return lambda record, index, values: None
-    lines = [
-        f"    record.{name}[index] = values.{name}"
-        for name, kind in zip(record.fields, record.types, strict=True)
-        if isinstance(kind, types.Array)
-    ]
-    return _define("put", "\n".join(["def put(record, index, values):", *lines, "    return"]), record)
+    lines = [f"    {line}" for line in _assign("record", "values", record)]
+    return define("put", "\n".join(["def put(record, index, values):", *lines, "    return"]), {})
 
 
 @overload(part, **inline_options)
 def _part(record, first, last):
-    classes = {}
-    view = _view("record", record, classes)
-    namespace = dict(classes)
-    exec(f"def part(record, first, last):\n    return {view}", namespace)
-    return namespace["part"]
+    classes = {"borrow": _borrow}
+    view = _rebuild("record", record, lambda name: f"borrow({name}, first, last)", classes)
+    return define("part", f"def part(record, first, last):\n    return {view}", classes)
 
 
-def _view(name, kind, classes):
-    """Expression for `part` of what is called `name` and has that Numba type; notes the record classes it needs."""
-    if isinstance(kind, types.Array):
-        return f"{name}[first:last]"
-    if not isinstance(kind, types.BaseNamedTuple):
-        return name
-    label = f"cls{len(classes)}"
-    classes[label] = kind.instance_class
-    fields = zip(kind.fields, kind.types, strict=True)
-    return f"{label}({', '.join(_view(f'{name}.{field}', inner, classes) for field, inner in fields)})"
+@intrinsic
+def _borrow(typing, array, first, last):
+    """View array[first:last] that counts no references: the kernel's caller holds the array."""
+
+    def generate(context, builder, signature, args):
+        whole = context.make_array(array)(context, builder, value=args[0])
+        view = context.make_array(array)(context, builder)
+        count = builder.sub(args[2], args[1])
+        context.populate_array(
+            view,
+            data=builder.gep(whole.data, [args[1]]),
+            shape=cgutils.pack_array(builder, [count]),
+            strides=whole.strides,
+            itemsize=whole.itemsize,
+            meminfo=None,
+        )
+        return view._getvalue()
+
+    return array(array, types.intp, types.intp), generate
 
 
-def _define(name, source, record):
-    namespace = {"cls": record.instance_class}
+def define(name, source, namespace):
+    """Make the function `name` from its source; `namespace` holds what it refers to."""
     exec(source, namespace)
     return namespace[name]
+
+
+def _fields(name, kind):
+    """Expression and Numba type of each field of a record or tuple called `name`."""
+    if isinstance(kind, types.BaseNamedTuple):
+        return [(f"{name}.{field}", inner) for field, inner in zip(kind.fields, kind.types, strict=True)]
+    return [(f"{name}[{k}]", inner) for k, inner in enumerate(kind)]
+
+
+def _rebuild(name, kind, of_array, classes):
+    """Expression for what is called `name`, `of_array` of every array in it; notes the record classes it needs."""
+    if isinstance(kind, types.Array):
+        return of_array(name)
+    if not isinstance(kind, types.BaseTuple):
+        return name
+    inner = ", ".join(_rebuild(field, inner, of_array, classes) for field, inner in _fields(name, kind))
+    if not isinstance(kind, types.BaseNamedTuple):
+        return f"({inner},)"
+    label = f"cls{len(classes)}"
+    classes[label] = kind.instance_class
+    return f"{label}({inner})"
+
+
+def _assign(name, value, kind):
+    """Lines that write `value` into every array of what is called `name`."""
+    if isinstance(kind, types.Array):
+        return [f"{name}[index] = {value}"]
+    if not isinstance(kind, types.BaseTuple):
+        return []
+    targets, values = _fields(name, kind), _fields(value, kind)
+    return [
+        line
+        for (target, inner), (source, _) in zip(targets, values, strict=True)
+        for line in _assign(target, source, inner)
+    ]

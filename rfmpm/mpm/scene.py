@@ -92,7 +92,7 @@ def release(scene: Scene, cohesion: np.ndarray | None):
 def empty_grid(axes: Axes) -> Grid:
     """Make the nodes of a grid, all zero."""
     rows, columns = axes.y.cells + 1, axes.x.cells + 1
-    return Grid(np.zeros((rows, columns)), *(zeros(rows, columns) for _ in range(4)))
+    return Grid(np.zeros((rows, columns)), *(zeros(rows, columns) for _ in range(5)))
 
 
 def outline(study) -> np.ndarray:

@@ -19,7 +19,7 @@ FLOORS = {
     3: ("mpm.scene", "mpm.solvers", "random_fields.field", "random_fields.statistics"),
     2.5: ("mpm.geometry", "mpm.energy", "mpm.initial_stress", "random_fields.store"),
     2: (
-        *("mpm.transfer", "mpm.boundary", "mpm.contact", "mpm.laws", "mpm.shapes"),
+        *("mpm.transfer", "mpm.stages", "mpm.boundary", "mpm.contact", "mpm.laws", "mpm.shapes"),
         *("random_fields.methods", "random_fields.correlation", "random_fields.marginals"),
         "random_fields.conditioning",
     ),

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 
 class Linear(NamedTuple):
     """Two nodes along one axis of `cells` cells between two walls."""
@@ -14,6 +16,6 @@ class Linear(NamedTuple):
     def weights(self, x):
         """Hat functions; a point on the far wall belongs to the last cell."""
         s = x * self.inverse_cell
-        i = min(int(s), self.cells - 1)
-        f = s - i
-        return i, (1.0 - f, f), (-self.inverse_cell, self.inverse_cell)
+        first = np.int32(min(s, self.cells - 1.0))
+        f = s - first
+        return first, (1.0 - f, f), (-self.inverse_cell, self.inverse_cell)

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 
 class QuadraticBSpline(NamedTuple):
     """Three nodes along one axis of `cells` cells between two walls.
@@ -17,18 +19,16 @@ class QuadraticBSpline(NamedTuple):
     cells: int
 
     def weights(self, x):
-        """First node, three weights and slopes."""
+        """First node, three weights and slopes; without branches, so that loops over points become vector code.
+
+        With f the distance from the first node in cells, a spline in the piece 1/2 <= f <= 3/2; what f exceeds the
+        piece by, it does within half a cell of a wall, where the outer weight goes on linearly and the others follow.
+        """
         s, k = x * self.inverse_cell, self.inverse_cell
-        if s < 0.5:
-            return 0, (1.0 - s, s, 0.0), (-k, k, 0.0)
-        if s >= self.cells - 0.5:
-            t = self.cells - s
-            return self.cells - 2, (0.0, t, 1.0 - t), (0.0, -k, k)
-        i = int(s - 0.5)
-        f = s - i
-        left, right = 1.5 - f, f - 0.5
-        return (
-            i,
-            (0.5 * left * left, 0.75 - (f - 1.0) * (f - 1.0), 0.5 * right * right),
-            (-left * k, -2.0 * (f - 1.0) * k, right * k),
-        )
+        first = np.int32(min(max(s - 0.5, 0.0), self.cells - 2.0))
+        f = s - first
+        inside = min(max(f, 0.5), 1.5)
+        left, right, excess = 1.5 - inside, inside - 0.5, inside - f
+        w0 = 0.5 * left * left + max(excess, 0.0)
+        w2 = 0.5 * right * right + max(-excess, 0.0)
+        return first, (w0, 1.0 - w0 - w2, w2), (-left * k, (left - right) * k, right * k)

@@ -46,7 +46,7 @@ def step(now, points, law, history, axes, grid, walls, controls):
         project_twice(points, axes, grid)
         subtract_second_projection(grid, box)
     if controls.second_mapping is None:
-        clear(grid.mass, box)
+        clear(grid.parts, box)
         clear(grid.sums, box)
         if filtering:
             moved = carry_points(points, law, history, axes, grid, grid.filtered, blend, None, dt)
@@ -59,7 +59,7 @@ def step(now, points, law, history, axes, grid, walls, controls):
         else:
             update_velocities(points, axes, grid, None, blend)
         gain += divide_straining(grid, box, dt)
-        clear(grid.mass, box)
+        clear(grid.parts, box)
         clear(grid.sums, box)
         moved = carry_points(points, law, history, axes, grid, None, blend, grid.straining, dt)
     kinetic, fall, work, fastest, touched, culprit = moved

@@ -57,6 +57,11 @@ def compiled_area(shape, scale):
 
 
 @kernel
+def copy_nested(record, source, target):
+    put(record, target, at(record, source))
+
+
+@kernel
 def sum_at(record, values):
     total = 0.0
     for p in range(values.size):
@@ -120,6 +125,16 @@ def test_put_writes_into_arrays_and_leaves_the_rest(doubled):
     doubled(record, 2)
     assert record.array.tolist() == [2.0, 4.0, 3.0]
     assert (record.uniform, record.count) == (0.5, 4)
+
+
+@pytest.mark.parametrize("copy", [copy_nested, getattr(copy_nested, "py_func", copy_nested)], ids=["compiled", "plain"])
+def test_at_and_put_reach_arrays_in_records_and_tuples_within(copy):
+    record = Nested(Mixed(np.array([1.0, 2.0]), 0.5, 7), np.array([10.0, 20.0]))
+    copy(record, 1, 0)
+    assert (record.mixed.array.tolist(), record.array.tolist()) == ([2.0, 2.0], [20.0, 20.0])
+    pair = (np.array([1.0, 2.0]), np.array([3.0, 4.0]))
+    copy(pair, 0, 1)
+    assert [array.tolist() for array in pair] == [[1.0, 1.0], [3.0, 3.0]]
 
 
 @pytest.mark.parametrize(

@@ -3,37 +3,53 @@
 import numpy as np
 import pytest
 
-from rfmpm.kernel_tools import gather, gather_slopes, kernel, scatter, scatter_scalar, scatter_slopes
+from rfmpm.kernel_tools import (
+    gather,
+    gather_slopes,
+    kernel,
+    make_stencil,
+    put_stencil,
+    scatter,
+    scatter_rows,
+    scatter_slopes,
+)
 
-ROWS, COLUMNS = 6, 7
+ROWS, COLUMNS, POINT = 6, 7, 5
 IDENTITY = 1e-12  # a few tens of roundings, fused or not, of values of order one
-both_widths = pytest.mark.parametrize("width", [2, 3])
+every_width = pytest.mark.parametrize("width", [2, 3, 4])
 every_corner = pytest.mark.parametrize("corner", [(0, 0), (2, 1), (-1, -1)])
 
 
 @kernel
-def compiled_gather(values, i, wx, j, wy):
-    return gather(values, i, wx, j, wy)
+def compiled_gather(values, x, y, p):
+    return gather(values, x, y, p)
 
 
 @kernel
-def compiled_gather_slopes(values, i, wx, dx, j, wy, dy):
-    return gather_slopes(values, i, wx, dx, j, wy, dy)
+def compiled_gather_slopes(values, x, y, p):
+    return gather_slopes(values, x, y, p)
 
 
 @kernel
-def compiled_scatter(values, i, wx, j, wy, amount):
-    scatter(values, i, wx, j, wy, amount)
+def compiled_scatter(values, x, y, p, amount):
+    scatter(values, x, y, p, amount)
 
 
 @kernel
-def compiled_scatter_slopes(values, i, wx, dx, j, wy, dy, amount, along_x, along_y):
-    scatter_slopes(values, i, wx, dx, j, wy, dy, amount, along_x, along_y)
+def compiled_scatter_slopes(values, x, y, p, amount, along_x, along_y):
+    scatter_slopes(values, x, y, p, amount, along_x, along_y)
 
 
 @kernel
-def compiled_scatter_scalar(values, i, wx, j, wy, amount):
-    scatter_scalar(values, i, wx, j, wy, amount)
+def compiled_scatter_rows(values, x, y, p, amount):
+    scatter_rows(values, x, y, p, amount)
+
+
+@kernel
+def stencil(first, weights, slopes):
+    made = make_stencil(weights)
+    put_stencil(made, POINT, first, weights, slopes)
+    return made
 
 
 @pytest.fixture
@@ -41,73 +57,85 @@ def random():
     return np.random.default_rng(3)
 
 
-def first_node(corner, width):
-    """Column and row of the first node; -1 is the last place where the stencil fits."""
+@pytest.fixture
+def place(random, width, corner):
+    """Column, weights and slopes, row, weights and slopes of one point; corner -1 is the last place that fits."""
     i, j = corner
-    return (COLUMNS - width if i < 0 else i), (ROWS - width if j < 0 else j)
+    return (
+        *((COLUMNS - width if i < 0 else i), *weights_and_slopes(random, width)),
+        *((ROWS - width if j < 0 else j), *weights_and_slopes(random, width)),
+    )
 
 
-def tuples(random, width, count):
-    return [tuple(random.normal(size=width)) for _ in range(count)]
+def weights_and_slopes(random, width):
+    """Weights that sum to one and slopes that sum to zero."""
+    weights, slopes = random.uniform(size=width), random.normal(size=width)
+    return tuple(weights / weights.sum()), tuple(slopes - slopes.mean())
 
 
-@both_widths
+def both(place):
+    return stencil(*place[:3]), stencil(*place[3:])
+
+
+@every_width
 @every_corner
-def test_gather(random, width, corner):
-    (i, j), values = first_node(corner, width), random.normal(size=(ROWS, COLUMNS, 4))
-    wx, wy, dx, dy = tuples(random, width, 4)
-    by_hand = [
-        sum(wy[b] * wx[a] * values[j + b, i + a, k] for b in range(width) for a in range(width)) for k in range(4)
-    ]
-    np.testing.assert_allclose(gather(values, i, wx, j, wy), by_hand, rtol=0.0, atol=IDENTITY)
-    np.testing.assert_allclose(compiled_gather(values, i, wx, j, wy), by_hand, rtol=0.0, atol=IDENTITY)
-    plain = gather_slopes(values, i, wx, dx, j, wy, dy)
-    np.testing.assert_allclose(plain[0], by_hand, rtol=0.0, atol=IDENTITY)
-    np.testing.assert_allclose(plain[1], gather(values, i, dx, j, wy), rtol=0.0, atol=IDENTITY)
-    np.testing.assert_allclose(plain[2], gather(values, i, wx, j, dy), rtol=0.0, atol=IDENTITY)
-    found = compiled_gather_slopes(values, i, wx, dx, j, wy, dy)
-    np.testing.assert_allclose(found, plain, rtol=0.0, atol=IDENTITY)
+def test_gather(random, place, width):
+    (i, wx, dx, j, wy, dy), (x, y) = place, both(place)
+    values = random.normal(size=(ROWS, COLUMNS, 4))
+
+    def by_hand(across, up):
+        return [
+            sum(up[b] * across[a] * values[j + b, i + a, k] for b in range(width) for a in range(width))
+            for k in range(4)
+        ]
+
+    expected = by_hand(wx, wy), by_hand(dx, wy), by_hand(wx, dy)
+    for gathered in (gather, compiled_gather):
+        np.testing.assert_allclose(gathered(values, x, y, POINT), expected[0], rtol=0.0, atol=IDENTITY)
+    for gathered in (gather_slopes, compiled_gather_slopes):
+        np.testing.assert_allclose(gathered(values, x, y, POINT), expected, rtol=0.0, atol=IDENTITY)
 
 
-@both_widths
+@every_width
 @every_corner
-def test_compiled_scatter_adds_what_the_plain_one_adds(random, width, corner):
-    (i, j), before = first_node(corner, width), random.normal(size=(ROWS, COLUMNS, 4))
-    wx, wy, dx, dy = tuples(random, width, 4)
-    amount, along_x, along_y = tuples(random, 4, 3)
-    mass = before[:, :, 0].copy()
-    for plain, compiled, values, arguments in (
-        (scatter, compiled_scatter, before, (i, wx, j, wy, amount)),
-        (scatter_scalar, compiled_scatter_scalar, mass, (i, wx, j, wy, 0.7)),
-        (scatter_slopes, compiled_scatter_slopes, before, (i, wx, dx, j, wy, dy, amount, along_x, along_y)),
+def test_compiled_scatter_adds_what_the_plain_one_adds(random, place, width):
+    (i, _, _, j, _, _), (x, y) = place, both(place)
+    before = random.normal(size=(ROWS, COLUMNS, 4))
+    amount, along_x, along_y = (tuple(random.normal(size=4)) for _ in range(3))
+    touched = np.zeros((ROWS, COLUMNS, 4), dtype=bool)
+    touched[j : j + width, i : i + width] = True
+    in_lanes = np.zeros((ROWS, COLUMNS, 4), dtype=bool)
+    in_lanes[j : j + width, i, :width] = True
+    for plain, compiled, arguments, changed in (
+        (scatter, compiled_scatter, (amount,), touched),
+        (scatter_rows, compiled_scatter_rows, (0.7,), in_lanes),
+        (scatter_slopes, compiled_scatter_slopes, (amount, along_x, along_y), touched),
     ):
-        expected, found = values.copy(), values.copy()
-        plain(expected, *arguments)
-        compiled(found, *arguments)
+        expected, found = before.copy(), before.copy()
+        plain(expected, x, y, POINT, *arguments)
+        compiled(found, x, y, POINT, *arguments)
         np.testing.assert_allclose(found, expected, rtol=0.0, atol=IDENTITY)
-        touched = np.zeros((ROWS, COLUMNS), dtype=bool)
-        touched[j : j + width, i : i + width] = True
-        assert np.array_equal(found[~touched], values[~touched])
-        assert not np.any(found[touched] == values[touched])
+        assert np.array_equal(found != before, changed)
 
 
-@both_widths
+@every_width
 @every_corner
-def test_scatter_is_the_transpose_of_gather(random, width, corner):
-    (i, j), values = first_node(corner, width), random.normal(size=(ROWS, COLUMNS, 4))
-    wx, wy, dx, dy = tuples(random, width, 4)
-    amount, along_x, along_y = tuples(random, 4, 3)
+def test_scatter_is_the_transpose_of_gather(random, place, width):
+    x, y = both(place)
+    values = random.normal(size=(ROWS, COLUMNS, 4))
+    amount, along_x, along_y = (tuple(random.normal(size=4)) for _ in range(3))
     for scattered in (scatter, compiled_scatter):
         sums = np.zeros_like(values)
-        scattered(sums, i, wx, j, wy, amount)
-        assert np.vdot(sums, values) == pytest.approx(np.dot(gather(values, i, wx, j, wy), amount), abs=IDENTITY)
+        scattered(sums, x, y, POINT, amount)
+        assert np.vdot(sums, values) == pytest.approx(np.dot(gather(values, x, y, POINT), amount), abs=IDENTITY)
     for scattered in (scatter_slopes, compiled_scatter_slopes):
         sums = np.zeros_like(values)
-        scattered(sums, i, wx, dx, j, wy, dy, amount, along_x, along_y)
-        gathered = gather_slopes(values, i, wx, dx, j, wy, dy)
+        scattered(sums, x, y, POINT, amount, along_x, along_y)
+        gathered = gather_slopes(values, x, y, POINT)
         assert np.vdot(sums, values) == pytest.approx(np.vdot(gathered, (amount, along_x, along_y)), abs=IDENTITY)
-    for scattered in (scatter_scalar, compiled_scatter_scalar):
-        mass = np.zeros((ROWS, COLUMNS))
-        scattered(mass, i, wx, j, wy, 0.7)
-        expected = 0.7 * gather(values, i, wx, j, wy)[2]
+    for scattered in (scatter_rows, compiled_scatter_rows):
+        sums = np.zeros_like(values)
+        scattered(sums, x, y, POINT, 0.7)
+        mass = sum(np.pad(sums[:, : COLUMNS - k, k], ((0, 0), (k, 0))) for k in range(width))
+        expected = 0.7 * gather(values, x, y, POINT)[2]
         assert np.vdot(mass, values[:, :, 2]) == pytest.approx(expected, abs=IDENTITY)

@@ -1,0 +1,192 @@
+"""Stages of a step for a block of points: weights, grid to point, motion, stress, point to grid.
+
+Each is one loop over the block. Those that hold arithmetic alone read and write contiguous arrays and have no branches,
+so that the compiler takes several points at once; those that sum over nodes take the four values of one node at once.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rfmpm.kernel_tools import (
+    BLOCK,
+    Stencil,
+    Tensor,
+    at,
+    gather,
+    gather_slopes,
+    inlined,
+    kernel,
+    lanes,
+    make_stencil,
+    put,
+    put_lanes,
+    put_stencil,
+    scatter_rows,
+    scatter_slopes,
+)
+from rfmpm.mpm.protocols import update_stress, weights
+from rfmpm.mpm.state import CHANGE_X, CHANGE_Y, FORCE_X, FORCE_Y, X, Y
+
+XX, XY, YX, YY = range(4)
+
+
+class Scratch(NamedTuple):
+    """What the stages of a block pass on; but for the stencils, four values of a point side by side."""
+
+    x: Stencil
+    y: Stencil
+    motion: np.ndarray  # grid velocity x y, its change x y [m/s]
+    smooth: np.ndarray  # filtered velocity x y [m/s]
+    gradient: np.ndarray  # of the velocity: xx, xy, yx, yy [1/s]
+
+
+class Tally(NamedTuple):
+    """Sums over the points, kept apart by place in the block, so that their order depends on no machine."""
+
+    kinetic: np.ndarray  # [J/m]
+    fall: np.ndarray  # mass times fall [kg m/m]
+    work: np.ndarray  # of the stress [J/m]
+    fastest: np.ndarray  # largest squared speed [m2/s2]
+
+
+@kernel
+def make_scratch(axes):
+    """Make the room that a block's stages need."""
+    (_, across, _), (_, up, _), four = weights(axes.x, 0.0), weights(axes.y, 0.0), 4 * BLOCK
+    return Scratch(make_stencil(across), make_stencil(up), np.empty(four), np.empty(four), np.empty(four))
+
+
+@kernel
+def make_tally():
+    """Make empty sums."""
+    return Tally(np.zeros(BLOCK), np.zeros(BLOCK), np.zeros(BLOCK), np.zeros(BLOCK))
+
+
+@kernel
+def locate(axis, coordinate, stencil):
+    """Find nodes, weights and slopes along one axis."""
+    for p in range(coordinate.size):
+        first, weight, slope = weights(axis, coordinate[p])
+        put_stencil(stencil, p, first, weight, slope)
+
+
+@kernel
+def interpolate(values, scratch, count, out):
+    """Grid to point: the four values of the nodes."""
+    for p in range(count):
+        put_lanes(out, p, gather(values, scratch.x, scratch.y, p))
+
+
+@kernel
+def interpolate_slopes(values, scratch, count, out):
+    """Grid to point: the four values of the nodes into `out`, where given, and the gradient of the first two."""
+    for p in range(count):
+        value, along_x, along_y = gather_slopes(values, scratch.x, scratch.y, p)
+        if out is not None:
+            put_lanes(out, p, value)
+        put_lanes(scratch.gradient, p, (along_x[X], along_y[X], along_x[Y], along_y[Y]))
+
+
+@kernel
+def accelerate(velocity, motion, smooth, blend):
+    """Change the points' velocities, by the grid's change and towards the filtered one."""
+    for p in range(velocity.x.size):
+        vx, vy = velocity.x[p] + motion[4 * p + CHANGE_X], velocity.y[p] + motion[4 * p + CHANGE_Y]
+        if smooth is not None:
+            vx, vy = vx + blend * (smooth[4 * p + X] - vx), vy + blend * (smooth[4 * p + Y] - vy)
+        velocity.x[p], velocity.y[p] = vx, vy
+
+
+@kernel
+def move(points, axes, motion, dt, tally):
+    """Move the points with the grid's velocity. Returns the number of points that are no longer within the grid."""
+    length, height = axes.x.cells / axes.x.inverse_cell, axes.y.cells / axes.y.inverse_cell
+    outside = 0
+    for p in range(points.mass.size):
+        mass, vx, vy = points.mass[p], points.velocity.x[p], points.velocity.y[p]
+        speed = vx * vx + vy * vy
+        tally.kinetic[p] += 0.5 * mass * speed
+        tally.fall[p] -= mass * dt * motion[4 * p + Y]
+        tally.fastest[p] = max(tally.fastest[p], speed)
+        x, y = points.position.x[p] + dt * motion[4 * p + X], points.position.y[p] + dt * motion[4 * p + Y]
+        points.position.x[p], points.position.y[p] = x, y
+        outside += not ((x >= 0.0) & (x <= length) & (y >= 0.0) & (y <= height))
+    return outside
+
+
+@inlined
+def rotate(stress, xx, xy, yx, yy):
+    """Turn the stress with the body: by the rotation in the polar decomposition of I + dt L (plane: closed form)."""
+    even = 1.0 + 0.5 * (xx + yy)
+    odd = 0.5 * (yx - xy)
+    scale = 1.0 / (even * even + odd * odd)
+    cosine, sine = (even * even - odd * odd) * scale, 2.0 * even * odd * scale
+    mean, half = 0.5 * (stress.xx + stress.yy), 0.5 * (stress.xx - stress.yy)
+    turned = half * cosine - stress.xy * sine
+    return Tensor(mean + turned, mean - turned, stress.zz, half * sine + stress.xy * cosine)
+
+
+@kernel
+def deform(points, law, history, gradient, dt, tally):
+    """Strain the points: stress, history and volume."""
+    for p in range(points.volume.size):
+        xx, xy = dt * gradient[4 * p + XX], dt * gradient[4 * p + XY]
+        yx, yy = dt * gradient[4 * p + YX], dt * gradient[4 * p + YY]
+        old = rotate(at(points.stress, p), xx, xy, yx, yy)
+        change = Tensor(xx, yy, 0.0, 0.5 * (xy + yx))
+        stress, past = update_stress(at(law, p), old, change, at(history, p))
+        put(points.stress, p, stress)
+        put(history, p, past)
+        volume = points.volume[p]
+        points.volume[p] = volume * ((1.0 + xx) * (1.0 + yy) - xy * yx)
+        twice = (old.xx + stress.xx) * change.xx + (old.yy + stress.yy) * change.yy
+        tally.work[p] += 0.5 * volume * (twice + 2.0 * (old.xy + stress.xy) * change.xy)
+
+
+@kernel
+def load(points, scratch):
+    """Make what the points bring to the nodes: momentum and force, the latter times the slopes along x and along y."""
+    carried, pushed = scratch.motion, scratch.gradient
+    for p in range(points.mass.size):
+        mass, volume = points.mass[p], -points.volume[p]
+        shear = volume * points.stress.xy[p]
+        carried[4 * p + X], carried[4 * p + Y] = mass * points.velocity.x[p], mass * points.velocity.y[p]
+        carried[4 * p + FORCE_X], carried[4 * p + FORCE_Y] = shear, volume * points.stress.yy[p]
+        pushed[4 * p + X], pushed[4 * p + Y] = 0.0, 0.0
+        pushed[4 * p + FORCE_X], pushed[4 * p + FORCE_Y] = volume * points.stress.xx[p], shear
+
+
+@kernel
+def spread(mass, scratch, grid):
+    """Point to grid: add mass, momentum m v and internal force -V sigma grad w to the nodes."""
+    for p in range(mass.size):
+        carried, along_x = lanes(scratch.motion, p), lanes(scratch.gradient, p)
+        momentum = carried[X], carried[Y], 0.0, 0.0
+        along_y = 0.0, 0.0, carried[FORCE_X], carried[FORCE_Y]
+        scatter_rows(grid.parts, scratch.x, scratch.y, p, mass[p])
+        scatter_slopes(grid.sums, scratch.x, scratch.y, p, momentum, along_x, along_y)
+
+
+@kernel
+def extend(box, scratch, count):
+    """The box of first nodes used so far and by the block: first and last column, first and last row."""
+    x, y = scratch.x.first, scratch.y.first
+    left, low = x[0], y[0]
+    right, high = left, low
+    for p in range(count):
+        left, right = min(left, x[p]), max(right, x[p])
+        low, high = min(low, y[p]), max(high, y[p])
+    return min(box[0], int(left)), max(box[1], int(right)), min(box[2], int(low)), max(box[3], int(high))
+
+
+@kernel
+def collect(parts, mass, box, width):
+    """Sum the masses that rows of `width` nodes brought, which lie in lanes of their first node, into each node's."""
+    left, right, low, high = box
+    for j in range(low, high + 1):
+        for i in range(left, right + 1):
+            mass[j, i] = parts[j, i, 0]
+        for k in range(1, width):
+            for i in range(left + k, right + 1):
+                mass[j, i] += parts[j, i - k, k]
