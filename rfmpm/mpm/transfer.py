@@ -16,6 +16,7 @@ from rfmpm.mpm.stages import (
     make_scratch,
     make_tally,
     move,
+    rotate,
     spread,
 )
 from rfmpm.mpm.state import CHANGE_X, CHANGE_Y, X, Y
@@ -55,6 +56,7 @@ def carry_points(points, law, history, axes, grid, filtered, blend, straining, d
         if move(block, axes, scratch.motion, dt, tally):
             lost = first + first_outside(block, axes)
             break
+        rotate(block.stress, scratch.gradient, dt)
         deform(block, part(law, first, last), part(history, first, last), scratch.gradient, dt, tally)
         locate(axes.x, block.position.x, scratch.x)
         locate(axes.y, block.position.y, scratch.y)

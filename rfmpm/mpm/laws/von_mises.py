@@ -42,11 +42,12 @@ class VonMises(NamedTuple):
             return trial, history
         tau = sqrt(j2)
         per_strain = sqrt(THIRD)
-        g = (tau - cohesion) / (self.shear - self.softening * per_strain)
+        # Reciprocals of what is the same at every point: a loop over points divides once.
+        g = (tau - cohesion) * (1.0 / (self.shear - self.softening * per_strain))
         cohesion -= self.softening * per_strain * g
         if cohesion < self.residual:
             cohesion = self.residual
-            g = (tau - cohesion) / self.shear
+            g = (tau - cohesion) * (1.0 / self.shear)
         scale = cohesion / tau
         relaxed = Tensor(mean + scale * sxx, mean + scale * syy, mean + scale * szz, scale * trial.xy)
         return relaxed, PlasticHistory(history.plastic_strain + g * per_strain)
