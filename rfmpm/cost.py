@@ -58,10 +58,9 @@ def estimate(study: Study) -> dict[str, int | float]:
 
 def _seconds_per_step(prepared: realisation.Prepared, time_step: float) -> float:
     scene = prepared.scene
-    points, law, past, grid = scenes.release(scene, None)
-    advance = SOLVERS[prepared.study.time.scheme]
+    arguments = scenes.arguments(scene, scenes.release(scene, None))
     started = time.perf_counter()
-    now = advance(start(), TRIAL_STEPS * time_step, points, law, past, scene.axes, grid, scene.walls, scene.controls)
+    now = SOLVERS[prepared.study.time.scheme](start(), TRIAL_STEPS * time_step, *arguments)
     return (time.perf_counter() - started) / max(now.step_count, 1)
 
 

@@ -2,7 +2,7 @@
 
 import time
 from dataclasses import dataclass
-from math import isfinite, nan
+from math import nan
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from rfmpm import seeds
 from rfmpm.mpm import scene as scenes
+from rfmpm.mpm.energy import elastic_energy, energy_shares
 from rfmpm.mpm.solvers import SOLVERS
 from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNING, Progress, start
 from rfmpm.observer import Observer, final_state
@@ -67,9 +68,8 @@ def prepare(study, store: Path | None = None) -> Prepared:
 def compile_kernels(prepared: Prepared) -> None:
     """Compile what the study needs, or load it from the cache, so that no realisation has to."""
     scene = prepared.scene
-    points, law, past, grid = scenes.release(scene, None)
     advance = SOLVERS[prepared.study.time.scheme]
-    advance(start(), 0.0, points, law, past, scene.axes, grid, scene.walls, scene.controls)
+    advance(start(), 0.0, *scenes.arguments(scene, scenes.release(scene, None)))
 
 
 def realise_fields(study, index: int, level: int = 0) -> dict[str, np.ndarray]:
@@ -141,18 +141,18 @@ def _fields(prepared: Prepared, index: int, level: int, xi: np.ndarray | None) -
 def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int) -> Outcome:
     started = time.perf_counter()
     study, scene = prepared.study, prepared.scene
-    points, law, past, grid = scenes.release(scene, fields.get("cohesion"))
-    observer = Observer(scene, study, points, past, frames)
-    advance, now = SOLVERS[study.time.scheme], start()
+    own, now = scenes.release(scene, fields.get("cohesion")), start()
+    advance, arguments = SOLVERS[study.time.scheme], scenes.arguments(scene, own)
+    observer = Observer(scene, study, own.points, own.history, frames)
     while now.status == RUNNING and now.time < study.time.end_s:
         until = min(observer.next_sample, study.time.end_s)
-        now = advance(now, until, points, law, past, scene.axes, grid, scene.walls, scene.controls)
+        now = advance(now, until, *arguments)
         observer.sample(now)
     status, reason = _verdict(now, study)
     final = observer.points()
     cohesion = fields.get("cohesion", getattr(scene.material, "cohesion_kpa", nan) * 1e3)
     final["cohesion"] = np.broadcast_to(cohesion, final["x"].shape)
-    quantities = _quantities(prepared, final, observer, now, status)
+    quantities = _quantities(prepared, own, final, observer, now, status)
     return Outcome(
         quantities,
         status,
@@ -179,28 +179,17 @@ def _verdict(now: Progress, study) -> tuple[str, str]:
     return "not_at_rest", f"still moving at time.end_s = {study.time.end_s:g} s"
 
 
-def _quantities(prepared: Prepared, points, observer: Observer, now: Progress, status: str) -> dict[str, Any]:
+def _quantities(prepared: Prepared, own, points, observer: Observer, now: Progress, status: str) -> dict[str, Any]:
     """Every active quantity by name; NaN for a failed run."""
-    study = prepared.study
+    study, scene = prepared.study, prepared.scene
     names = [variable.name for variable in active_variables(study) if variable.name in QUANTITIES]
     measured = {
         "time_at_rest": now.time if status == "ok" else nan,
-        "energy_balance_error": _energy_balance_error(now),
-        "numerical_dissipation_share": _share(now.grid_gain - now.kinetic, now),
+        **energy_shares(now, scene.controls.energy_scale, elastic_energy(own.points, scene.lame, scene.shear)),
     }
     if status in FAILED:
         return dict.fromkeys((*names, "initial_failure_volume"), nan) | measured
-    state = final_state(prepared.scene, study, points)
+    state = final_state(scene, study, points)
     end_of_first_slide = first_minimum(np.array(observer.history["kinetic_energy"]))
     measured["initial_failure_volume"] = observer.history["failed_volume"][end_of_first_slide]
     return {name: QUANTITIES[name](state) for name in names} | measured
-
-
-def _energy_balance_error(now: Progress) -> float:
-    """Work of gravity that is neither kinetic, elastic or plastic, nor lost to friction or the transfer, as a share."""
-    lost = now.grid_gain - now.kinetic
-    return _share(now.gravity_work - now.kinetic - now.stress_work - now.friction_work - lost, now)
-
-
-def _share(energy: float, now: Progress) -> float:
-    return energy / abs(now.gravity_work) if isfinite(energy) and now.gravity_work != 0.0 else nan

@@ -129,17 +129,30 @@ VARIABLES = _table(
         "Elapsed time of this realisation on its worker; the one variable that differs from run to run.",
     ),
     _quantity(
-        "energy_balance_error",
+        "plastic_work_share",
         "1",
-        "error of the energy balance",
-        "Energy not accounted for at the end, relative to the work done by gravity.",
+        "share of plastic work",
+        "Work of the stress that is not stored elastically, relative to the work done by gravity.",
+    ),
+    _quantity(
+        "friction_work_share",
+        "1",
+        "share of the work of friction",
+        "Work of friction on base and sides, relative to the work done by gravity.",
     ),
     _quantity(
         "numerical_dissipation_share",
         "1",
         "share of numerical dissipation",
-        "Energy dissipated by the transfer between points and grid, relative to the work done by gravity. With linear "
-        "shapes it cannot be told from the error of the energy balance; only the sum of both has a meaning there.",
+        "Energy that the transfer between points and grid and the integration in time take, relative to the work done "
+        "by gravity; negative where they add energy.",
+    ),
+    _quantity(
+        "energy_balance_error",
+        "1",
+        "error of the energy balance",
+        "Work of gravity less kinetic energy, elastic energy gained, plastic work, work of friction and numerical "
+        "dissipation, relative to the work of gravity.",
     ),
     Variable(
         "final_surface",

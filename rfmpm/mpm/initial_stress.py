@@ -17,6 +17,7 @@ def elastic_gravity_stress(
     lame: float,
     shear: float,
     gravity: float,
+    cell_means: bool,
 ) -> Tensor:
     """Solve K u = f with the points as quadrature and the run's own shape functions, and take the stresses.
 
@@ -30,23 +31,22 @@ def elastic_gravity_stress(
         walls: walls of the domain.
         lame, shear: elastic constants [Pa].
         gravity: downwards [m/s2].
+        cell_means: whether volumetric strain and pressure are means over the points of a cell.
 
     Returns:
         Stress at the points, arrays of shape (n,) [Pa].
     """
     import scipy.linalg  # noqa: F401  (brings the BLAS that single_blas_thread limits)
-    from scipy.sparse import bmat, diags
+    from scipy.sparse import diags
     from scipy.sparse.linalg import spsolve
 
     value, slope_x, slope_y = interpolation(position, axes)
+    exx, eyy, gxy = _strains(slope_x, slope_y, _averages(position, volume, axes) if cell_means else None)
     v = diags(volume)
     along, across = lame + 2.0 * shear, lame
-    xx = slope_x.T @ v @ slope_x
-    yy = slope_y.T @ v @ slope_y
-    xy = slope_x.T @ v @ slope_y
-    stiffness = bmat(
-        [[along * xx + shear * yy, across * xy + shear * xy.T], [across * xy.T + shear * xy, along * yy + shear * xx]]
-    ).tocsr()
+    mixed = exx.T @ v @ eyy
+    normal = along * (exx.T @ v @ exx + eyy.T @ v @ eyy) + across * (mixed + mixed.T)
+    stiffness = (normal + shear * (gxy.T @ v @ gxy)).tocsr()
     force = np.concatenate([np.zeros(value.shape[1]), -gravity * (value.T @ mass)])
     free = _free_components(axes, walls) & (stiffness.diagonal() > 0.0)
     # Scaled to a unit diagonal, for nodes that hardly touch a point; the shift keeps patterns that no point resists
@@ -56,10 +56,36 @@ def elastic_gravity_stress(
     displacement = np.zeros(len(free))
     with single_blas_thread():
         displacement[free] = scale * spsolve(scaled.tocsc(), scale * force[free])
-    ux, uy = np.split(displacement, 2)
-    exx, eyy, gxy = slope_x @ ux, slope_y @ uy, slope_y @ ux + slope_x @ uy
+    exx, eyy, gxy = (strain @ displacement for strain in (exx, eyy, gxy))
     volumetric = lame * (exx + eyy)
     return Tensor(volumetric + 2.0 * shear * exx, volumetric + 2.0 * shear * eyy, volumetric, shear * gxy)
+
+
+def _strains(slope_x, slope_y, averages):
+    """Strains xx, yy and engineering xy at the points, as matrices on the displacements (all x, then all y)."""
+    from scipy.sparse import bmat, identity
+
+    if averages is None:
+        nothing = slope_x * 0.0
+        return bmat([[slope_x, nothing]]), bmat([[nothing, slope_y]]), bmat([[slope_y, slope_x]])
+    change_x, change_y = (0.5 * (averages - identity(len(averages.indptr) - 1)) @ slope for slope in (slope_x, slope_y))
+    return (
+        bmat([[slope_x + change_x, change_y]]),
+        bmat([[change_x, slope_y + change_y]]),
+        bmat([[slope_y, slope_x]]),
+    )
+
+
+def _averages(position, volume, axes):
+    """Matrix (n, n) that replaces a value at each point by the volume-weighted mean over the points of its cell."""
+    from scipy.sparse import csr_matrix, diags
+
+    column, row = (position * axes.x.inverse_cell).astype(int).T
+    _, cell = np.unique(row * (axes.x.cells + 1) + column, return_inverse=True)
+    points = np.arange(len(volume))
+    sums = csr_matrix((volume, (cell, points)))
+    spread = csr_matrix((np.ones(len(volume)), (points, cell)))
+    return (spread @ diags(1.0 / np.asarray(sums.sum(axis=1)).ravel()) @ sums).tocsr()
 
 
 def interpolation(position: np.ndarray, axes: Axes):

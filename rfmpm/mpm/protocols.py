@@ -8,8 +8,21 @@ from rfmpm.kernel_tools import generic
 class ConstitutiveLaw(Protocol):
     """A stress-strain relation at one point."""
 
-    def update_stress(self, stress, strain_increment, history):
-        """Return (stress, history) after one strain increment; `stress` has been rotated with the body."""
+    def update_stress(self, stress, strain_increment, history, dt):
+        """Return (stress, history) after one strain increment in dt [s]; `stress` has been rotated with the body."""
+
+
+class SofteningHistory(Protocol):
+    """What the strength of a point follows."""
+
+    def softening_strain(self):
+        """Return the plastic strain that the strength follows [-]."""
+
+    def local_share(self):
+        """Return how much of the point's plastic strain it follows within a step [-]."""
+
+    def grown(self, increment):
+        """Return the history after some more plastic strain."""
 
 
 class ShapeFunction(Protocol):
@@ -31,5 +44,8 @@ class Wall(Protocol):
 
 
 update_stress = generic(ConstitutiveLaw.update_stress)
+softening_strain = generic(SofteningHistory.softening_strain)
+local_share = generic(SofteningHistory.local_share)
+grown = generic(SofteningHistory.grown)
 weights = generic(ShapeFunction.weights)
 constrain = generic(Wall.constrain)

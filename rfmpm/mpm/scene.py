@@ -1,17 +1,21 @@
 """A scene: everything that realisations of one study share, and what one of them starts from."""
 
 from dataclasses import dataclass
-from math import sqrt
+from math import inf, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
 from rfmpm.kernel_tools import Vector, zeros
 from rfmpm.mpm.boundary import WALLS, Walls
+from rfmpm.mpm.cells import Cells, make_cells
 from rfmpm.mpm.energy import elastic_energy
 from rfmpm.mpm.geometry import Body, body, fill
 from rfmpm.mpm.initial_stress import elastic_gravity_stress
 from rfmpm.mpm.laws import LAWS
 from rfmpm.mpm.laws.elastic import lame_constants
+from rfmpm.mpm.laws.history import NonlocalHistory
+from rfmpm.mpm.nonlocal_softening import Averaging, averaging
 from rfmpm.mpm.shapes import SHAPES
 from rfmpm.mpm.solvers import Controls
 from rfmpm.mpm.state import Axes, Grid, Points, copy_points
@@ -19,6 +23,7 @@ from rfmpm.mpm.state import Axes, Grid, Points, copy_points
 GRAVITY = 9.81  # [m/s2]
 
 FILTER_INTERVAL = 8  # steps; the filter acts at a rate, so this only spreads its cost
+AVERAGE_SHARE = 0.5  # of the time in which a shear wave crosses the softening length, from one average to the next
 REST_FRACTION, REST_TIME = 1e-3, 1.0
 GROWTH_LIMIT = 0.05
 
@@ -36,6 +41,7 @@ class Scene:
     material: object  # the study's material
     lame: float  # [Pa]
     shear: float  # [Pa]
+    cell_means: bool  # volumetric strain and pressure are means over the points of a cell
 
 
 def build(study) -> Scene:
@@ -56,7 +62,9 @@ def build(study) -> Scene:
     axes = Axes(*(axis(1.0 / cell, round(extent / cell)) for extent in (shape.length, shape.top)))
     walls = Walls(_wall(study.boundary.base), _wall(study.boundary.sides))
     mass = density * volume
-    stress = elastic_gravity_stress(position, mass, volume, axes, walls, lame, shear, GRAVITY)
+    length = getattr(material, "softening_length_m", None)
+    averaged = study.discretisation.volumetric_strain == "cell_mean"
+    stress = elastic_gravity_stress(position, mass, volume, axes, walls, lame, shear, GRAVITY, averaged)
     still = Vector(np.zeros(len(volume)), np.zeros(len(volume)))
     points = Points(Vector(*position.T.copy()), still, mass, volume, stress)
     controls = Controls(
@@ -66,16 +74,28 @@ def build(study) -> Scene:
         courant=study.time.step_fraction * axis.COURANT,
         dissipation_time=study.discretisation.dissipation_time_s,
         filter_interval=FILTER_INTERVAL,
+        average_interval=AVERAGE_SHARE * length / sqrt(shear / density) if length else inf,
         rest_fraction=REST_FRACTION,
         rest_time=REST_TIME,
         energy_scale=elastic_energy(points, lame, shear),
         growth_limit=GROWTH_LIMIT,
         second_mapping=True if study.discretisation.shape == "linear" else None,
     )
-    return Scene(shape, cell, points, axes, walls, controls, material, lame, shear)
+    return Scene(shape, cell, points, axes, walls, controls, material, lame, shear, averaged)
 
 
-def release(scene: Scene, cohesion: np.ndarray | None):
+class Released(NamedTuple):
+    """What one realisation changes or owns."""
+
+    points: Points
+    law: tuple
+    history: tuple | None
+    grid: Grid
+    cells: Cells | None
+    averaging: Averaging | None
+
+
+def release(scene: Scene, cohesion: np.ndarray | None) -> Released:
     """Make what one realisation changes or owns.
 
     Args:
@@ -83,10 +103,30 @@ def release(scene: Scene, cohesion: np.ndarray | None):
         cohesion: peak cohesion of each point, shape (n,) [Pa]; None for the material's own.
 
     Returns:
-        Points, law, history and grid, for `solvers.advance`.
+        What it owns.
     """
-    law, history = LAWS[scene.material.law].build(scene.material, scene.cell, len(scene.points.mass), cohesion)
-    return copy_points(scene.points), law, history, empty_grid(scene.axes)
+    count = len(scene.points.mass)
+    law, history = LAWS[scene.material.law].build(scene.material, scene.cell, count, cohesion)
+    cells = make_cells(count, scene.axes) if scene.cell_means else None
+    means = None
+    if isinstance(history, NonlocalHistory):
+        means = averaging(scene.material.softening_length_m, scene.axes)
+    return Released(copy_points(scene.points), law, history, empty_grid(scene.axes), cells, means)
+
+
+def arguments(scene: Scene, own: Released) -> tuple:
+    """What a solver's `advance` takes after progress and time.
+
+    Args:
+        scene: the scene.
+        own: what `release` made; the solver changes it.
+
+    Returns:
+        The arguments, in order.
+    """
+    return (
+        own.points, own.law, own.history, scene.axes, own.grid, own.cells, own.averaging, scene.walls, scene.controls,
+    )  # fmt: skip
 
 
 def empty_grid(axes: Axes) -> Grid:

@@ -15,6 +15,7 @@ from rfmpm.kernel_tools import (
     at,
     gather,
     gather_slopes,
+    inlined,
     kernel,
     lanes,
     make_stencil,
@@ -46,6 +47,7 @@ class Tally(NamedTuple):
     kinetic: np.ndarray  # [J/m]
     fall: np.ndarray  # mass times fall [kg m/m]
     work: np.ndarray  # of the stress [J/m]
+    plastic: np.ndarray  # part of it that is not stored elastically [J/m]
     fastest: np.ndarray  # largest squared speed [m2/s2]
 
 
@@ -59,7 +61,7 @@ def make_scratch(axes):
 @kernel
 def make_tally():
     """Make empty sums."""
-    return Tally(np.zeros(BLOCK), np.zeros(BLOCK), np.zeros(BLOCK), np.zeros(BLOCK))
+    return Tally(np.zeros(BLOCK), np.zeros(BLOCK), np.zeros(BLOCK), np.zeros(BLOCK), np.zeros(BLOCK))
 
 
 @kernel
@@ -128,6 +130,14 @@ def rotate(stress, gradient, dt):
         stress.xx[p], stress.yy[p], stress.xy[p] = mean + turned, mean - turned, half * sine + xy * cosine
 
 
+@inlined
+def elastic_density(stress, lame, shear):
+    """Elastic energy of a stress per volume [Pa]: sigma : C^-1 : sigma / 2."""
+    trace = stress.xx + stress.yy + stress.zz
+    square = stress.xx * stress.xx + stress.yy * stress.yy + stress.zz * stress.zz + 2.0 * stress.xy * stress.xy
+    return (square - lame / (3.0 * lame + 2.0 * shear) * trace * trace) * (0.25 / shear)
+
+
 @kernel
 def deform(points, law, history, gradient, dt, tally):
     """Strain the points, whose stresses have been rotated: stress, history and volume.
@@ -138,13 +148,16 @@ def deform(points, law, history, gradient, dt, tally):
         xx, xy = dt * gradient[4 * p + XX], dt * gradient[4 * p + XY]
         yx, yy = dt * gradient[4 * p + YX], dt * gradient[4 * p + YY]
         old, change = at(points.stress, p), Tensor(xx, yy, 0.0, 0.5 * (xy + yx))
-        stress, past = update_stress(at(law, p), old, change, at(history, p))
+        stress, past = update_stress(at(law, p), old, change, at(history, p), dt)
         put(points.stress, p, stress)
         put(history, p, past)
         volume = points.volume[p]
         points.volume[p] = volume * ((1.0 + xx) * (1.0 + yy) - xy * yx)
         twice = (old.xx + stress.xx) * change.xx + (old.yy + stress.yy) * change.yy
-        tally.work[p] += 0.5 * volume * (twice + 2.0 * (old.xy + stress.xy) * change.xy)
+        work = 0.5 * (twice + 2.0 * (old.xy + stress.xy) * change.xy)
+        stored = elastic_density(stress, law.lame, law.shear) - elastic_density(old, law.lame, law.shear)
+        tally.work[p] += volume * work
+        tally.plastic[p] += volume * (work - stored)
 
 
 @kernel

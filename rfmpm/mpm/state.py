@@ -49,9 +49,11 @@ class Progress(NamedTuple):
     peak_kinetic: float  # the largest so far [J/m]
     quiet_time: float  # how long the kinetic energy has been small [s]
     since_filter: float  # time since the filter last acted [s]
+    since_average: float  # time since the softening was last averaged [s]
     fastest: float  # largest point speed [m/s]
     gravity_work: float  # [J/m]
     stress_work: float  # elastic and plastic [J/m]
+    plastic_work: float  # the part of it that is not stored [J/m]
     friction_work: float  # taken by friction on walls [J/m]
     grid_gain: float  # kinetic energy gained on the grid, summed over the steps [J/m]
     first_column: int  # the nodes that points touch
@@ -74,9 +76,11 @@ def start() -> Progress:
         peak_kinetic=0.0,
         quiet_time=0.0,
         since_filter=0.0,
+        since_average=0.0,
         fastest=0.0,
         gravity_work=0.0,
         stress_work=0.0,
+        plastic_work=0.0,
         friction_work=0.0,
         grid_gain=0.0,
         first_column=0,

@@ -3,8 +3,19 @@
 Sulsky, Chen and Schreyer (1994) for the scheme, Nairn and Hammerquist (2021) for FMPM.
 """
 
+from math import inf
+
 from rfmpm.kernel_tools import BLOCK, gather, kernel, part, scatter
+from rfmpm.mpm.cells import (
+    divide,
+    share_dilatation,
+    share_pressure,
+    sum_dilatation,
+    sum_pressure,
+    with_mean_pressure,
+)
 from rfmpm.mpm.stages import (
+    Scratch,
     accelerate,
     collect,
     deform,
@@ -23,50 +34,99 @@ from rfmpm.mpm.state import CHANGE_X, CHANGE_Y, X, Y
 
 
 @kernel
-def carry_points(points, law, history, axes, grid, filtered, blend, straining, dt):
+def carry_points(points, law, history, axes, grid, cells, filtered, blend, straining, dt):
     """Carry the points through the grid: grid to point, stress, point to grid.
 
-    One pass over the points, a block at a time, so that a point's data cross the memory once a step. It reads the
-    velocities of the old positions from `grid.flow` and adds to `grid.mass` and `grid.sums`, which must be zero, at the
-    new ones; with zero `flow` and `dt` it only adds.
+    It reads the velocities of the old positions from `grid.flow` and adds to `grid.parts` and `grid.sums`, which must be
+    zero, at the new ones; with zero `flow` and `dt` it only adds. Without `cells` it is one pass over the points, a
+    block at a time, so that a point's data cross the memory once a step; with them (means over the points of a cell),
+    the sums over all points before the stress and before the force make it three.
 
     `filtered`, where given, is the velocity towards which a fraction `blend` of the point's velocity goes (FMPM);
     `straining`, where given, the velocity that strains the points, whose own is then already up to date (MUSL).
 
-    Returns (kinetic energy [J/m], sum of mass times fall [kg m/m], work of stress [J/m], largest squared speed, box of
-    nodes touched, index of a point that left the grid or -1).
+    Returns (kinetic energy [J/m], sum of mass times fall [kg m/m], work of stress and its plastic part [J/m], largest
+    squared speed, box of nodes touched, index of a point that left the grid or -1).
     """
     box = grid.mass.shape[1], 0, grid.mass.shape[0], 0
-    scratch, tally, lost = make_scratch(axes), make_tally(), -1
-    for first in range(0, points.mass.size, BLOCK):
-        last = min(first + BLOCK, points.mass.size)
-        count, block = last - first, part(points, first, last)
-        locate(axes.x, block.position.x, scratch.x)
-        locate(axes.y, block.position.y, scratch.y)
-        if straining is None:
-            interpolate_slopes(grid.flow, scratch, count, scratch.motion)
-            if filtered is not None:
-                interpolate(filtered, scratch, count, scratch.smooth)
-                accelerate(block.velocity, scratch.motion, scratch.smooth, blend)
-            else:
-                accelerate(block.velocity, scratch.motion, None, blend)
-        else:
-            interpolate(grid.flow, scratch, count, scratch.motion)
-            interpolate_slopes(straining, scratch, count, None)
-        if move(block, axes, scratch.motion, dt, tally):
-            lost = first + first_outside(block, axes)
-            break
-        rotate(block.stress, scratch.gradient, dt)
-        deform(block, part(law, first, last), part(history, first, last), scratch.gradient, dt, tally)
-        locate(axes.x, block.position.x, scratch.x)
-        locate(axes.y, block.position.y, scratch.y)
-        load(block, scratch)
-        spread(block.mass, scratch, grid)
-        box = extend(box, scratch, count)
+    scratch, tally, lost, count = make_scratch(axes), make_tally(), -1, points.mass.size
+    if cells is None:
+        for first in range(0, count, BLOCK):
+            last = min(first + BLOCK, count)
+            block = part(points, first, last)
+            if grid_to_points(block, axes, grid, scratch, filtered, blend, straining, dt, tally):
+                lost = first + first_outside(block, axes)
+                break
+            strain(block, part(law, first, last), part(history, first, last), scratch.gradient, dt, tally)
+            box = points_to_grid(block, axes, grid, scratch, box)
+    else:
+        cells.sums[:] = 0.0
+        for first in range(0, count, BLOCK):
+            last = min(first + BLOCK, count)
+            block, own = part(points, first, last), keep_gradient(scratch, cells.gradient[4 * first : 4 * last])
+            if grid_to_points(block, axes, grid, own, filtered, blend, straining, dt, tally):
+                return 0.0, 0.0, 0.0, 0.0, inf, box, first + first_outside(block, axes)
+            sum_dilatation(points, cells, first, last)
+        divide(cells)
+        for first in range(0, count, BLOCK):
+            last = min(first + BLOCK, count)
+            share_dilatation(cells, first, last)
+            gradient = cells.gradient[4 * first : 4 * last]
+            strain(part(points, first, last), part(law, first, last), part(history, first, last), gradient, dt, tally)
+        cells.sums[:] = 0.0
+        cells.volume[:] = 0.0
+        sum_pressure(points, axes, cells, 0, count)
+        divide(cells)
+        share_pressure(points, cells, 0, count)
+        loaded = with_mean_pressure(points, cells)
+        for first in range(0, count, BLOCK):
+            box = points_to_grid(part(loaded, first, min(first + BLOCK, count)), axes, grid, scratch, box)
     width = len(scratch.x.like)
     box = box[0], box[1] + width - 1, box[2], box[3] + len(scratch.y.like) - 1
     collect(grid.parts, grid.mass, box, width)
-    return tally.kinetic.sum(), tally.fall.sum(), tally.work.sum(), tally.fastest.max(), box, lost
+    return tally.kinetic.sum(), tally.fall.sum(), tally.work.sum(), tally.plastic.sum(), tally.fastest.max(), box, lost
+
+
+@kernel
+def grid_to_points(points, axes, grid, scratch, filtered, blend, straining, dt, tally):
+    """Velocity gradient, velocity and position of a block. Returns how many points are no longer within the grid."""
+    count = points.mass.size
+    locate(axes.x, points.position.x, scratch.x)
+    locate(axes.y, points.position.y, scratch.y)
+    if straining is None:
+        interpolate_slopes(grid.flow, scratch, count, scratch.motion)
+        if filtered is not None:
+            interpolate(filtered, scratch, count, scratch.smooth)
+            accelerate(points.velocity, scratch.motion, scratch.smooth, blend)
+        else:
+            accelerate(points.velocity, scratch.motion, None, blend)
+    else:
+        interpolate(grid.flow, scratch, count, scratch.motion)
+        interpolate_slopes(straining, scratch, count, None)
+    return move(points, axes, scratch.motion, dt, tally)
+
+
+@kernel
+def strain(points, law, history, gradient, dt, tally):
+    """Turn the stresses of a block with the body and strain its points."""
+    rotate(points.stress, gradient, dt)
+    deform(points, law, history, gradient, dt, tally)
+
+
+@kernel
+def points_to_grid(points, axes, grid, scratch, box):
+    """Mass, momentum and internal force of a block at its new positions. Returns the box of first nodes so far."""
+    locate(axes.x, points.position.x, scratch.x)
+    locate(axes.y, points.position.y, scratch.y)
+    load(points, scratch)
+    spread(points.mass, scratch, grid)
+    return extend(box, scratch, points.mass.size)
+
+
+@kernel
+def keep_gradient(scratch, gradient):
+    """The same room, but for a place elsewhere for the velocity gradient."""
+    return Scratch(scratch.x, scratch.y, scratch.motion, scratch.smooth, gradient)
 
 
 @kernel

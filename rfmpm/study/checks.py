@@ -14,6 +14,7 @@ LARGEST_POINT_COUNT = 5_000_000
 LARGEST_CELL_COUNT = 20_000_000
 LARGEST_BIN_COUNT = 100_000
 LARGEST_CHOLESKY_COUNT = 20_000
+LARGEST_CELL_OVER_LENGTH = 1.0  # of a softening length; the transfer itself averages over 0.7 cells
 HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION = 0.99  # towards 1 a truncated normal becomes exponential
 SMALLEST_CELLS = {("slope", "height_m"): 4, ("slope", "crest_m"): 2, ("block", "width_m"): 2, ("block", "height_m"): 1}
 
@@ -159,7 +160,7 @@ def _softening_does_not_snap_back(known: Known) -> Iterator[Problem]:
     """On the uniaxial path of the shear stress invariant the softening line must be less steep than the elastic one."""
     for index in range(len(known["material"])):
         material = f"material.{index}"
-        if known[f"{material}.law"] != "von_mises":
+        if known[f"{material}.law"] != "von_mises" or known[f"{material}.softening_length_m"]:
             continue
         shear_modulus = known[f"{material}.youngs_modulus_kpa"] / (2 * (1 + known[f"{material}.poissons_ratio"]))
         scale = 1 / sqrt(3)
@@ -173,6 +174,23 @@ def _softening_does_not_snap_back(known: Known) -> Iterator[Problem]:
                 "else the stress falls faster than the material can unload"
             )
             yield _problem(known, f"{material}.softening_modulus_kpa", text)
+
+
+def _softening_has_one_length(known: Known) -> Iterator[Problem]:
+    """A scaled modulus and a softening length exclude each other; the cells must resolve the length."""
+    for index in range(len(known["material"])):
+        material = f"material.{index}"
+        if known[f"{material}.law"] != "von_mises" or not (length := known[f"{material}.softening_length_m"]):
+            continue
+        if known[f"{material}.softening_reference_cell_m"]:
+            text = "cannot be given together with softening_length_m: the modulus is then the soil's own, not scaled"
+            yield _problem(known, f"{material}.softening_reference_cell_m", text)
+        if known["discretisation.cell_m"] > LARGEST_CELL_OVER_LENGTH * length * (1 + 1e-9):
+            text = (
+                f"must be at least {known['discretisation.cell_m'] / LARGEST_CELL_OVER_LENGTH:.4g} m with these cells, "
+                "or take smaller cells: an average over less than a cell depends on the cell"
+            )
+            yield _problem(known, f"{material}.softening_length_m", text)
 
 
 def _there_is_one_material(known: Known) -> Iterator[Problem]:
@@ -222,6 +240,7 @@ CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _surface_bins_are_affordable,
     _residual_is_below_the_peak,
     _softening_does_not_snap_back,
+    _softening_has_one_length,
     _there_is_one_material,
     _names_are_unique,
     _field_has_its_material,

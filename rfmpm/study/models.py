@@ -65,6 +65,9 @@ class Discretisation(Table):
         description="Material points in a full cell"
     )
     shape: Literal["linear", "quadratic_bspline"] = Field(description="Shape function")
+    volumetric_strain: Literal["cell_mean", "point"] = Field(
+        "cell_mean", description="Volumetric strain and pressure: mean over the points of a cell, or each point's own"
+    )
     dissipation_time_s: Annotated[float, Strict(), Hint("inf for no dissipation")] = Field(
         5.0, gt=0, description="Time in which the transfer damps velocities below the grid's resolution [s]; inf = none"
     )
@@ -122,6 +125,12 @@ class VonMisesMaterial(ElasticMaterial):
     )
     softening_reference_cell_m: Length | None = Field(
         None, description="Cell size the softening modulus refers to [m]; left out: the modulus is not scaled"
+    )
+    softening_length_m: Length | None = Field(
+        None, description="Length of the soil over which softening is averaged [m]; left out: each point by itself"
+    )
+    viscosity_kpa_s: NotNegative = Field(
+        0.0, description="Strength gained per rate of plastic shear (engineering) [kPa s]"
     )
     strength_convention: Literal["sqrt_j2", "sqrt_3j2"] = Field(
         "sqrt_j2", description="Invariant that equals the cohesion at yield; sqrt_j2: undrained strength"

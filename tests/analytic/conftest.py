@@ -16,12 +16,15 @@ from rfmpm.study import Study
 
 
 def block_study(width, height, foreland, cell=0.25, base=None, **changes) -> Study:
-    """Study of an elastic block between rollers, or on another base; changes by path, with `__` for the dots."""
+    """Study of an elastic block between rollers, or on another base; changes by path, with `__` for the dots.
+
+    Compressible rubber does not lock: each point has its own volumetric strain.
+    """
     study = rfmpm.load_study(
         {
             "study": {"name": "elastic block", "seed": 1},
             "geometry": {"kind": "block", "width_m": width, "height_m": height, "foreland_m": foreland},
-            "discretisation": {"cell_m": cell, "points_per_cell": 4, "shape": "quadratic_bspline"},
+            "discretisation": {"cell_m": cell, "points_per_cell": 4, "shape": "quadratic_bspline", "volumetric_strain": "point"},
             "boundary": {"base": base or {"kind": "roller"}, "sides": {"kind": "roller"}},
             "material": [
                 {
@@ -59,7 +62,7 @@ def launched(
     if stress is None:
         stress = elastic_gravity_stress(
             np.column_stack(position), first.mass, first.volume, scene.axes, scene.walls, scene.lame, scene.shear,
-            changed.gravity,
+            changed.gravity, scene.cell_means,
         )  # fmt: skip
     points = Points(
         position,
@@ -76,13 +79,11 @@ class Flight:
 
     def __init__(self, scene):
         self.scene, self.now = scene, start()
-        self.points, self.law, self.history, self.grid = scenes.release(scene, None)
+        self.own = scenes.release(scene, None)
+        self.points = self.own.points
 
     def until(self, time):
-        scene = self.scene
-        self.now = SOLVERS["explicit"](
-            self.now, time, self.points, self.law, self.history, scene.axes, self.grid, scene.walls, scene.controls
-        )
+        self.now = SOLVERS["explicit"](self.now, time, *scenes.arguments(self.scene, self.own))
         return self.now
 
 

@@ -1,6 +1,5 @@
 """Where the energy goes: in the vibration of an elastic bar, and in a collapse."""
 
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -17,10 +16,10 @@ LENGTH, PERIODS = 2.0, 5
 class Bar:
     """A bar on a roller in its first axial mode, of small amplitude, without gravity or filter."""
 
-    def __init__(self, blocks, cell, step_fraction):
+    def __init__(self, blocks, cell, step_fraction, volumetric_strain="point"):
         self.scene = blocks.scene(
             2.0 * cell, LENGTH, 0.0, cell=cell, time__step_fraction=step_fraction,
-            discretisation__dissipation_time_s=float("inf"),
+            discretisation__dissipation_time_s=float("inf"), discretisation__volumetric_strain=volumetric_strain,
         )  # fmt: skip
         self.mode = np.sin(0.5 * np.pi * self.scene.points.position.y / LENGTH)
         self.flight = blocks.flight(blocks.launched(self.scene, velocity=(0.0, 0.01 * self.mode), gravity=0.0))
@@ -66,28 +65,31 @@ def test_bar_swings_with_its_period_and_keeps_its_energy_better_on_finer_grids(b
     assert losses[-1] < 1e-3
 
 
-def test_energy_balance_of_the_bar_closes_with_the_time_step(blocks):
+@pytest.mark.parametrize("volumetric_strain", ["point", "cell_mean"])
+def test_energy_balance_of_the_bar_closes_with_the_time_step(blocks, volumetric_strain):
     fractions, errors = (0.1, 0.05, 0.025), []
     for fraction in fractions:
-        bar = Bar(blocks, 0.25, fraction)
+        bar = Bar(blocks, 0.25, fraction, volumetric_strain)
         now = bar.flight.until(PERIODS * bar.period)
-        # What the grid gains is what the stresses give, up to the first order of a scheme that is forward in velocity.
+        # What the grid gains is what the stresses give, up to the first order of a scheme that is forward in velocity:
+        # so it is too with means over cells, where the mean pressure in the force is adjoint to the mean strain.
         errors.append(abs(now.grid_gain + now.stress_work) / bar.start)
     assert order(fractions, errors) == pytest.approx(1.0, abs=0.1)
-    assert errors[0] < 0.01
+    assert errors[0] < 0.015
 
 
 @pytest.mark.parametrize("residual", [4.0, 12.0])
-def test_energy_balance_of_a_collapse_closes_with_the_time_step(residual):
+@pytest.mark.parametrize("shape", ["quadratic_bspline", "linear"])
+def test_energy_balance_of_a_collapse_closes_whatever_the_time_step(residual, shape):
     study = rfmpm.load_study(SHORT_SLOPE).with_changes(
-        {"discretisation.cell_m": 0.5, "time.end_s": 3.0, "material.0.residual_cohesion_kpa": residual}
+        {"discretisation.cell_m": 0.5, "time.end_s": 3.0, "material.0.residual_cohesion_kpa": residual,
+         "discretisation.shape": shape}
     )
-    errors = []
-    for fraction in (0.8, 0.4, 0.2, 0.1):
+    dissipated = []
+    for fraction in (0.8, 0.2):
         outcome = realisation.simulate(realisation.prepare(study.with_changes({"time.step_fraction": fraction})))
         assert outcome.status == "not_at_rest"
-        errors.append(abs(outcome.quantities["energy_balance_error"]))
-    # Regression: 1.4 % at a residual of 4 kPa and 0.3 % at 12 kPa, and a fifth less for half the step: points that
-    # pass from the air's nodes to the body's keep the order below one.
-    assert errors[0] < 0.02
-    assert all(fine < 0.9 * coarse for coarse, fine in pairwise(errors))
+        # Elastic energy refers to the present volume, its changes to that of each step: strains of a few per cent.
+        assert abs(outcome.quantities["energy_balance_error"]) < 0.005
+        dissipated.append(outcome.quantities["numerical_dissipation_share"])
+    assert 0.0 < dissipated[1] < dissipated[0] < 0.1

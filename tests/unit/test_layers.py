@@ -12,14 +12,15 @@ PACKAGE = Path(__file__).parents[2] / "rfmpm"
 FLOORS = {
     7: ("cli",),
     6.5: ("rfmpm",),  # the public names
-    6: ("ensemble", "report", "cost"),
+    6: ("ensemble", "report", "cost", "benchmark"),
     5: ("realisation", "results"),
     4.5: ("observer",),
     4: ("quantities", "estimators", "stability"),
     3: ("mpm.scene", "mpm.solvers", "random_fields.field", "random_fields.statistics"),
     2.5: ("mpm.geometry", "mpm.energy", "mpm.initial_stress", "random_fields.store"),
+    2.2: ("mpm.transfer",),
     2: (
-        *("mpm.transfer", "mpm.stages", "mpm.boundary", "mpm.contact", "mpm.laws", "mpm.shapes"),
+        *("mpm.stages", "mpm.cells", "mpm.nonlocal_softening", "mpm.boundary", "mpm.contact", "mpm.laws", "mpm.shapes"),
         *("random_fields.methods", "random_fields.correlation", "random_fields.marginals"),
         "random_fields.conditioning",
     ),

@@ -183,6 +183,7 @@ REFUSED = {
     "discretisation.cell_m": [0, -0.25, INF, NAN, 1e-300],
     "discretisation.points_per_cell": [0, 2, 4.0, "4", True],
     "discretisation.shape": ["quadratic", 2],
+    "discretisation.volumetric_strain": ["cell", True],
     "discretisation.dissipation_time_s": [0, -1, NAN, "inf"],
     "boundary.base": ["fixed", {"kind": "sticky"}, {"kind": "friction"}, {"kind": "roller", "coefficient": 0.3}],
     "boundary.base.coefficient": [-0.1, INF, NAN, "0.3"],
@@ -195,6 +196,8 @@ REFUSED = {
     "material.0.residual_cohesion_kpa": [0, -4, INF, NAN, 20.1],
     "material.0.softening_modulus_kpa": [-50, INF, NAN],
     "material.0.softening_reference_cell_m": [0, -0.25, INF, NAN],
+    "material.0.softening_length_m": [0, -0.5, INF, NAN],
+    "material.0.viscosity_kpa_s": [-0.3, INF, NAN],
     "material.0.strength_convention": ["tresca"],
     "random_field.cohesion.material": ["", "sand", 1],
     "random_field.cohesion.distribution": ["normal"],
@@ -328,6 +331,25 @@ def test_softening_that_snaps_back_is_refused(study, changes, divisor):
 def test_unscaled_softening_does_not_look_at_the_cells(study):
     unscaled = study.with_changes({"material.0.softening_reference_cell_m": None, "discretisation.cell_m": 1.0})
     assert unscaled.with_changes({"material.0.softening_modulus_kpa": 650.0}).material[0].softening_modulus_kpa == 650.0
+
+
+NONLOCAL = {"material.0.softening_reference_cell_m": None, "material.0.softening_length_m": 0.5}
+
+
+def test_softening_over_a_length_of_the_soil_needs_cells_no_larger(study):
+    study.with_changes({**NONLOCAL, "discretisation.cell_m": 0.5})
+    (problem,) = problems_of(study, {**NONLOCAL, "discretisation.cell_m": 1.0})
+    assert problem.startswith("material.0.softening_length_m = 0.5: must be at least 1 m with these cells")
+
+
+def test_softening_has_a_length_or_a_reference_cell_but_not_both(study):
+    (problem,) = problems_of(study, {"material.0.softening_length_m": 0.5})
+    assert "cannot be given together with softening_length_m" in problem
+
+
+def test_softening_over_a_length_may_be_steeper_than_the_unloading(study):
+    # Within a step the strength stays as it is, so that no stress has to be found on a line that snaps back.
+    study.with_changes({**NONLOCAL, "material.0.softening_modulus_kpa": 1e4})
 
 
 def test_field_needs_a_material_with_a_cohesion(study):

@@ -29,7 +29,7 @@ class Elastic(NamedTuple):
     lame: float  # first Lame parameter [Pa]
     shear: float  # shear modulus [Pa]
 
-    def update_stress(self, stress, strain_increment, history):
+    def update_stress(self, stress, strain_increment, history, dt):
         """Hooke's law in rate form."""
         return hooke(self.lame, self.shear, stress, strain_increment), history
 

@@ -1,4 +1,4 @@
-"""Von Mises plasticity, sqrt(J2) = c, with cohesion falling linearly to a residual value."""
+"""Von Mises plasticity, sqrt(J2) = c, with cohesion falling linearly to a residual value and rising with the rate."""
 
 from math import sqrt
 from typing import NamedTuple
@@ -7,14 +7,12 @@ import numpy as np
 
 from rfmpm.kernel_tools import Tensor
 from rfmpm.mpm.laws.elastic import hooke, lame_constants
+from rfmpm.mpm.laws.history import NonlocalHistory, PlasticHistory
+from rfmpm.mpm.protocols import grown, local_share, softening_strain
 
 THIRD = 1.0 / 3.0
-
-
-class PlasticHistory(NamedTuple):
-    """What plastic flow leaves behind."""
-
-    plastic_strain: float  # equivalent: integral of sqrt(2/3 de_p : de_p) [-]
+PER_STRAIN = sqrt(THIRD)  # equivalent plastic strain per plastic shear
+SMALLEST = 1e-300  # keeps a stress without shear, and a step of no time, out of the divisions
 
 
 class VonMises(NamedTuple):
@@ -22,35 +20,31 @@ class VonMises(NamedTuple):
 
     lame: float  # first Lame parameter [Pa]
     shear: float  # shear modulus [Pa]
+    viscosity: float  # strength gained per rate of plastic shear [Pa s]
     peak: float  # [Pa]
     residual: float  # [Pa]
     softening: float  # loss of cohesion per unit equivalent plastic strain [Pa]
 
-    def update_stress(self, stress, strain_increment, history):
+    def update_stress(self, stress, strain_increment, history, dt):
         """Elastic predictor and exact radial return.
 
         In terms of the plastic shear g (engineering), the equivalent plastic strain grows by g / sqrt(3), sqrt(J2)
-        falls by G g and the cohesion by H g / sqrt(3): one linear equation on the softening branch, another one on the
-        residual plateau (de Souza Neto et al. 2008, section 7.3).
+        falls by G g, the cohesion falls by H g / sqrt(3) and the strength gains eta g / dt: one linear equation on the
+        softening branch, another one on the residual plateau (de Souza Neto et al. 2008, sections 7.3 and 11.2).
         """
         trial = hooke(self.lame, self.shear, stress, strain_increment)
         mean = (trial.xx + trial.yy + trial.zz) * THIRD
         sxx, syy, szz = trial.xx - mean, trial.yy - mean, trial.zz - mean
-        j2 = 0.5 * (sxx * sxx + syy * syy + szz * szz) + trial.xy * trial.xy
-        cohesion = max(self.residual, self.peak - self.softening * history.plastic_strain)
-        if j2 <= cohesion * cohesion:
-            return trial, history
-        tau = sqrt(j2)
-        per_strain = sqrt(THIRD)
-        # Reciprocals of what is the same at every point: a loop over points divides once.
-        g = (tau - cohesion) * (1.0 / (self.shear - self.softening * per_strain))
-        cohesion -= self.softening * per_strain * g
-        if cohesion < self.residual:
-            cohesion = self.residual
-            g = (tau - cohesion) * (1.0 / self.shear)
-        scale = cohesion / tau
+        tau = sqrt(0.5 * (sxx * sxx + syy * syy + szz * szz) + trial.xy * trial.xy)
+        cohesion = max(self.residual, self.peak - self.softening * softening_strain(history))
+        fall = self.softening * PER_STRAIN * local_share(history)
+        stiffness = self.shear + self.viscosity / max(dt, SMALLEST)
+        g = 0.0 if tau <= cohesion else (tau - cohesion) / (stiffness - fall)  # what is not a number stays so
+        if cohesion - fall * g < self.residual:
+            g = (tau - self.residual) / stiffness
+        scale = 1.0 - self.shear * g / max(tau, SMALLEST)
         relaxed = Tensor(mean + scale * sxx, mean + scale * syy, mean + scale * szz, scale * trial.xy)
-        return relaxed, PlasticHistory(history.plastic_strain + g * per_strain)
+        return relaxed, grown(history, g * PER_STRAIN)
 
     @classmethod
     def build(cls, material, cell, count, cohesion):
@@ -71,5 +65,8 @@ class VonMises(NamedTuple):
         softening = material.softening_modulus_kpa * 1e3
         if material.softening_reference_cell_m is not None:
             softening *= cell / material.softening_reference_cell_m
-        unit = 1.0 if material.strength_convention == "sqrt_j2" else sqrt(THIRD)
-        return cls(lame, shear, peak * unit, residual * unit, softening * unit), PlasticHistory(np.zeros(count))
+        unit = 1.0 if material.strength_convention == "sqrt_j2" else PER_STRAIN
+        law = cls(lame, shear, material.viscosity_kpa_s * 1e3, peak * unit, residual * unit, softening * unit)
+        if material.softening_length_m is None:
+            return law, PlasticHistory(np.zeros(count))
+        return law, NonlocalHistory(np.zeros(count), np.zeros(count))

@@ -4,6 +4,7 @@ from math import exp, inf
 from typing import NamedTuple
 
 from rfmpm.kernel_tools import kernel
+from rfmpm.mpm.nonlocal_softening import average_softening
 from rfmpm.mpm.solvers.grid import clear, divide_straining, subtract_second_projection, update_grid
 from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNING, Progress
 from rfmpm.mpm.transfer import carry_points, project_twice, update_velocities
@@ -18,6 +19,7 @@ class Controls(NamedTuple):
     courant: float  # wave speed plus point speed, times time step, over cell [-]
     dissipation_time: float  # time in which velocities relax to the filtered grid velocity [s]
     filter_interval: int  # steps from one application of the filter to the next
+    average_interval: float  # time from one average of the softening to the next [s]
     rest_fraction: float  # of the largest kinetic energy, below which a scene counts as quiet [-]
     rest_time: float  # quiet this long is at rest [s]
     energy_scale: float  # elastic energy at the start, when all points are still [J/m]
@@ -26,7 +28,7 @@ class Controls(NamedTuple):
 
 
 @kernel
-def step(now, points, law, history, axes, grid, walls, controls):
+def step(now, points, law, history, axes, grid, cells, averaging, walls, controls):
     """Advance everything by one time step; a first call with no nodes touched only fills the grid.
 
     Returns the new progress.
@@ -49,26 +51,32 @@ def step(now, points, law, history, axes, grid, walls, controls):
         clear(grid.parts, box)
         clear(grid.sums, box)
         if filtering:
-            moved = carry_points(points, law, history, axes, grid, grid.filtered, blend, None, dt)
+            moved = carry_points(points, law, history, axes, grid, cells, grid.filtered, blend, None, dt)
         else:
-            moved = carry_points(points, law, history, axes, grid, None, blend, None, dt)
+            moved = carry_points(points, law, history, axes, grid, cells, None, blend, None, dt)
     else:
         clear(grid.straining, box)
         if filtering:
             update_velocities(points, axes, grid, grid.filtered, blend)
         else:
             update_velocities(points, axes, grid, None, blend)
-        gain += divide_straining(grid, box, dt)
+        divide_straining(grid, box)
         clear(grid.parts, box)
         clear(grid.sums, box)
-        moved = carry_points(points, law, history, axes, grid, None, blend, grid.straining, dt)
-    kinetic, fall, work, fastest, touched, culprit = moved
+        moved = carry_points(points, law, history, axes, grid, cells, None, blend, grid.straining, dt)
+    kinetic, fall, work, plastic, fastest, touched, culprit = moved
+    since_average = now.since_average + dt
+    if averaging is not None:
+        if since_average >= controls.average_interval and culprit < 0:
+            average_softening(points, history, axes, averaging, touched)
+            since_average = 0.0
     peak = max(now.peak_kinetic, kinetic)
     quiet = now.quiet_time + dt if kinetic < controls.rest_fraction * peak else 0.0
     after = Progress(
-        now.status, now.time + dt, now.step_count + (dt > 0.0), kinetic, peak, quiet, since_filter, fastest**0.5,
-        now.gravity_work + controls.gravity * fall, now.stress_work + work, now.friction_work + friction,
-        now.grid_gain + gain, touched[0], touched[1], touched[2], touched[3], culprit,
+        now.status, now.time + dt, now.step_count + (dt > 0.0), kinetic, peak, quiet, since_filter, since_average,
+        fastest**0.5,
+        now.gravity_work + controls.gravity * fall, now.stress_work + work, now.plastic_work + plastic,
+        now.friction_work + friction, now.grid_gain + gain, touched[0], touched[1], touched[2], touched[3], culprit,
     )  # fmt: skip
     return judge(after, points, controls)
 
@@ -90,14 +98,15 @@ def judge(now, points, controls):
     elif now.quiet_time >= controls.rest_time:
         status = AT_REST
     return Progress(
-        status, now.time, now.step_count, now.kinetic, now.peak_kinetic, now.quiet_time, now.since_filter, now.fastest,
-        now.gravity_work, now.stress_work, now.friction_work, now.grid_gain,
+        status, now.time, now.step_count, now.kinetic, now.peak_kinetic, now.quiet_time, now.since_filter,
+        now.since_average, now.fastest,
+        now.gravity_work, now.stress_work, now.plastic_work, now.friction_work, now.grid_gain,
         now.first_column, now.last_column, now.first_row, now.last_row, now.culprit,
     )  # fmt: skip
 
 
 @kernel
-def advance(now, until, points, law, history, axes, grid, walls, controls):
+def advance(now, until, points, law, history, axes, grid, cells, averaging, walls, controls):
     """Step until the time is `until` or later, or the run ends.
 
     Args:
@@ -107,6 +116,8 @@ def advance(now, until, points, law, history, axes, grid, walls, controls):
         law: constitutive law.
         axes: shape functions.
         grid: nodes; belongs to this run.
+        cells: sums over the points of a cell, of this run; None: each point has its own volumetric strain.
+        averaging: how softening is averaged, of this run; None: each point softens by itself.
         walls: what holds the domain's edges.
         controls: numbers of the time integration.
 
@@ -114,5 +125,5 @@ def advance(now, until, points, law, history, axes, grid, walls, controls):
         The progress, with its status.
     """
     while now.status == RUNNING and (now.time < until or now.last_row < 0):
-        now = step(now, points, law, history, axes, grid, walls, controls)
+        now = step(now, points, law, history, axes, grid, cells, averaging, walls, controls)
     return now

@@ -71,23 +71,14 @@ def subtract_second_projection(grid, box):
 
 
 @kernel
-def divide_straining(grid, box, dt):
-    """Turn `grid.straining` from the momentum of the updated points into a velocity; what a wall holds stays held.
-
-    Returns the work [J/m] that the internal forces do on the difference between it and the grid's velocity in mid-step.
-    """
-    difference = 0.0
+def divide_straining(grid, box):
+    """Turn `grid.straining` from the momentum of the updated points into a velocity; what a wall holds stays held."""
     for row in range(box[2], box[3] + 1):
         for column in range(box[0], box[1] + 1):
             m = grid.mass[row, column]
             for k in range(2):
-                v = 0.0
-                if m > 0.0 and grid.flow[row, column, k] != 0.0:
-                    v = grid.straining[row, column, k] / m
-                    middle = grid.flow[row, column, k] - 0.5 * grid.flow[row, column, CHANGE_X + k]
-                    difference += dt * grid.sums[row, column, FORCE_X + k] * (v - middle)
-                grid.straining[row, column, k] = v
-    return difference
+                is_free = m > 0.0 and grid.flow[row, column, k] != 0.0
+                grid.straining[row, column, k] = grid.straining[row, column, k] / m if is_free else 0.0
 
 
 @kernel

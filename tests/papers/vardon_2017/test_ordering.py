@@ -15,7 +15,7 @@ import rfmpm
 from rfmpm import realisation
 from rfmpm.quantities.state import label_cells
 
-SHORT_SLOPE = Path(__file__).parents[3] / "configs" / "short_slope.toml"
+SHORT_SLOPE = Path(__file__).parents[3] / "configs" / "papers" / "vardon_2017_short_slope.toml"
 CREST, HEIGHT, VOLUME, PEAK = 10.0, 5.0, 62.5, 20.0  # [m], [m], [m3/m], [kPa]
 RESIDUALS = (12.0, 8.0, 4.0)  # [kPa]
 MODULI = (25.0, 50.0, 75.0)  # [kPa]
@@ -69,7 +69,7 @@ def test_lower_residual_fails_further_in_every_measure(name):
 def test_residual_12_slumps_a_little_behind_one_band():
     found = outcome(12.0).quantities
     assert found["block_count"] == 1
-    assert found["run_out"] < 0.5 * HEIGHT
+    assert found["run_out"] < 0.6 * HEIGHT
     assert found["retrogression_distance"] < 0.5 * CREST
     assert found["failure_volume"] < 0.5 * VOLUME
 
@@ -77,8 +77,7 @@ def test_residual_12_slumps_a_little_behind_one_band():
 def test_residual_8_fails_at_the_back_after_its_slip_circle_but_not_to_the_boundary():
     run = outcome(8.0)
     time, crest = run.history["time"], run.history["crest"]
-    # The circle cuts the crest within 2.5 s, as with 12 kPa, half way back; what follows is behind it. On 0.25 m cells
-    # nothing follows: 8 and 12 kPa both stop at 3.56 m, which the paper does not show.
+    # The circle cuts the crest within 2.5 s, as with 12 kPa, half way back; what follows is behind it.
     assert 0.5 * CREST < crest[time < 2.5].min() < 0.65 * CREST
     assert crest[-1] < crest[time < 2.5].min() - 1.0
     assert not run.quantities["retrogression_censored"]
@@ -94,13 +93,14 @@ def test_residual_4_retrogresses_until_the_boundary_stops_it_and_leaves_at_least
 
 def test_retrogression_grows_with_the_softening_modulus():
     runs = [outcome(modulus=modulus) for modulus in MODULI]
-    # At the end; 50 and 75 kPa are both stopped by the boundary, so the volume and the time to it go on.
+    # At the end; 50 and 75 kPa are both stopped by the boundary, so only the time to it goes on.
     distances = [run.quantities["retrogression_distance"] for run in runs]
     assert distances[0] < 0.6 * distances[1]
     assert distances[1] <= distances[2]
     assert [bool(run.quantities["retrogression_censored"]) for run in runs] == [False, True, True]
     volumes = [run.quantities["failure_volume"] for run in runs]
-    assert volumes[0] < volumes[1] <= volumes[2]
+    assert volumes[0] < 0.6 * volumes[1]
+    assert volumes[0] < 0.6 * volumes[2]
     times = [boundary_reached(run.history) for run in runs]
     assert times[2] < 0.9 * times[1] < times[0]
     run_outs = [run.quantities["run_out"] for run in runs]

@@ -31,13 +31,14 @@ every_shape = pytest.mark.parametrize("shape", SHAPES)
 both_bases = pytest.mark.parametrize("base", ["fixed", "roller"])
 
 
-def study_of(geometry, shape="quadratic_bspline", base="fixed", cell=CELL, points_per_cell=4):
+def study_of(geometry, shape="quadratic_bspline", base="fixed", cell=CELL, points_per_cell=4, means=False):
+    choices = {"volumetric_strain": "cell_mean" if means else "point"}
     boundary = {"kind": base, "coefficient": 0.3} if base == "friction" else {"kind": base}
     return load_study(
         {
             "study": {"name": "elastic body", "seed": 1},
             "geometry": geometry,
-            "discretisation": {"cell_m": cell, "points_per_cell": points_per_cell, "shape": shape},
+            "discretisation": {"cell_m": cell, "points_per_cell": points_per_cell, "shape": shape} | choices,
             "boundary": {"base": boundary, "sides": {"kind": "roller"}},
             "material": [
                 {
@@ -148,11 +149,24 @@ def test_slope_is_in_plane_strain(shape):
     np.testing.assert_allclose(stress.zz, POISSON * (stress.xx + stress.yy), rtol=0.0, atol=1e5 * IDENTITY)
 
 
+def with_mean_pressure_of_cells(scene):
+    """Stress with the volume-weighted mean over a cell's points in place of the in-plane mean stress."""
+    points, stress = scene.points, scene.points.stress
+    cell = np.floor(np.column_stack(points.position) * scene.axes.x.inverse_cell)
+    _, of = np.unique(cell, axis=0, return_inverse=True)
+    own = 0.5 * (stress.xx + stress.yy)
+    mean = (np.bincount(of, points.volume * own) / np.bincount(of, points.volume))[of]
+    return stress._replace(xx=stress.xx + mean - own, yy=stress.yy + mean - own)
+
+
 @pytest.mark.parametrize("base", ["fixed", "roller", "friction"])
 @every_shape
-def test_forces_on_free_nodes_balance(shape, base):
-    scene = slope(shape=shape, base=base)
+@pytest.mark.parametrize("means", [False, True])
+def test_forces_on_free_nodes_balance(shape, base, means):
+    scene = slope(shape=shape, base=base, means=means)
     points, stress = scene.points, scene.points.stress
+    if means:
+        stress = with_mean_pressure_of_cells(scene)
     value, slope_x, slope_y = interpolation(np.column_stack(points.position), scene.axes)
     nodes = (scene.axes.y.cells + 1, scene.axes.x.cells + 1)
     along = -(slope_x.T @ (points.volume * stress.xx) + slope_y.T @ (points.volume * stress.xy)).reshape(nodes)
@@ -168,11 +182,11 @@ def test_forces_on_free_nodes_balance(shape, base):
     np.testing.assert_allclose(up, 0.0, atol=SHIFT * weight)
 
 
-def test_nothing_moves_at_release():
+@pytest.mark.parametrize("means", [False, True])
+def test_nothing_moves_at_release(means):
     # A base that holds or lets slide whatever the force: one with friction would let go where its limit is passed.
-    scene = slope(base="roller")
-    points, law, history, grid = scenes.release(scene, None)
-    now = SOLVERS["explicit"](start(), 0.5, points, law, history, scene.axes, grid, scene.walls, scene.controls)
+    scene = slope(base="roller", means=means)
+    now = SOLVERS["explicit"](start(), 0.5, *scenes.arguments(scene, scenes.release(scene, None)))
     assert now.status == RUNNING
     assert now.step_count > 20
     # Forces of SHIFT move nothing further than SHIFT of the elastic displacement: energies are its square.

@@ -17,6 +17,7 @@ BULK = YOUNG / (3.0 * (1.0 - 2.0 * POISSON))
 NOTHING = Tensor(0.0, 0.0, 0.0, 0.0)
 AMOUNTS = (0.01, 0.05, 0.06, 0.1, 0.3, 0.55, 0.6, 1.0)  # elastic, softening, residual
 IDENTITY = 1e-12
+STEP = 1e-3  # [s]
 
 
 def law_and_history(cell=CELL, cohesion=None, count=1, **changes):
@@ -36,7 +37,7 @@ def strained(direction, amount, steps=1, **options):
     law, history = (at(record, 0) for record in law_and_history(**options))
     stress, strain = NOTHING, Tensor(*(amount / steps * component for component in direction))
     for _ in range(steps):
-        stress, history = update_stress(law, stress, strain, history)
+        stress, history = update_stress(law, stress, strain, history, STEP)
     return stress, history.plastic_strain
 
 
@@ -88,13 +89,13 @@ def test_one_step_over_both_kinks_equals_many(direction, strain):
 
 def test_unloading_is_elastic_and_reloading_finds_the_softened_strength():
     law, history = (at(record, 0) for record in law_and_history())
-    stress, history = update_stress(law, NOTHING, Tensor(0.0, 0.0, 0.0, 0.1), history)
+    stress, history = update_stress(law, NOTHING, Tensor(0.0, 0.0, 0.0, 0.1), history, STEP)
     softened, plastic = stress.xy, history.plastic_strain
-    stress, history = update_stress(law, stress, Tensor(0.0, 0.0, 0.0, -0.01), history)
+    stress, history = update_stress(law, stress, Tensor(0.0, 0.0, 0.0, -0.01), history, STEP)
     assert stress.xy == pytest.approx(softened - 0.02 * SHEAR, rel=IDENTITY)
-    stress, history = update_stress(law, stress, Tensor(0.0, 0.0, 0.0, 0.01), history)
+    stress, history = update_stress(law, stress, Tensor(0.0, 0.0, 0.0, 0.01), history, STEP)
     assert (stress.xy, history.plastic_strain) == pytest.approx((softened, plastic), rel=IDENTITY)
-    stress, history = update_stress(law, stress, Tensor(0.0, 0.0, 0.0, 0.01), history)
+    stress, history = update_stress(law, stress, Tensor(0.0, 0.0, 0.0, 0.01), history, STEP)
     assert stress.xy < softened
 
 
@@ -121,11 +122,11 @@ def test_a_field_of_peaks_brings_residuals_in_proportion():
     law, history = law_and_history(cohesion=peaks, count=3)
     for point, peak in enumerate(peaks):
         start = at(history, point)
-        weakest, _ = update_stress(at(law, point), NOTHING, Tensor(0.0, 0.0, 0.0, 50.0), start)
+        weakest, _ = update_stress(at(law, point), NOTHING, Tensor(0.0, 0.0, 0.0, 50.0), start, STEP)
         assert weakest.xy == pytest.approx(0.2 * peak, rel=IDENTITY)
         onset = 0.5 * peak / SHEAR
         for share, yields in ((0.999, False), (1.001, True)):
-            _, after = update_stress(at(law, point), NOTHING, Tensor(0.0, 0.0, 0.0, share * onset), start)
+            _, after = update_stress(at(law, point), NOTHING, Tensor(0.0, 0.0, 0.0, share * onset), start, STEP)
             assert (after.plastic_strain > 0.0) == yields
 
 
@@ -133,3 +134,30 @@ def test_no_residual_given_is_no_softening():
     stress, plastic = strained(SIMPLE_SHEAR, 1.0, residual_cohesion_kpa=None)
     assert plastic > 0.0
     assert stress.xy == pytest.approx(PEAK, rel=IDENTITY)
+
+
+def test_strength_rises_with_the_rate_of_plastic_shear():
+    rate, viscosity = 5.0, 300.0  # [1/s], [Pa s]
+    law, history = (at(record, 0) for record in law_and_history(softening_modulus_kpa=0.0, viscosity_kpa_s=0.3))
+    stress, steps = NOTHING, 2000  # to a strain of 10; the overstress relaxes by G dt / (G dt + eta) a step
+    for _ in range(steps):
+        stress, history = update_stress(law, stress, Tensor(0.0, 0.0, 0.0, 0.5 * rate * STEP), history, STEP)
+    assert stress.xy == pytest.approx(PEAK + viscosity * rate, rel=IDENTITY)
+
+
+def test_a_step_of_no_time_changes_nothing_even_with_viscosity():
+    law, history = (at(record, 0) for record in law_and_history(viscosity_kpa_s=0.3))
+    stress, after = update_stress(law, Tensor(0.0, 0.0, 0.0, PEAK), NOTHING, history, 0.0)
+    assert stress == Tensor(0.0, 0.0, 0.0, PEAK)
+    assert after == history
+
+
+def test_with_a_softening_length_strength_follows_the_average_alone():
+    law, history = (at(record, 0) for record in law_and_history(softening_length_m=0.5))
+    large = Tensor(0.0, 0.0, 0.0, 0.5)
+    stress, after = update_stress(law, NOTHING, large, history, STEP)
+    assert stress.xy == pytest.approx(PEAK, rel=IDENTITY)
+    assert after.plastic_strain > 0.0
+    weakened = after._replace(averaged_strain=0.1)
+    stress, _ = update_stress(law, stress, large, weakened, STEP)
+    assert stress.xy == pytest.approx(PEAK - 0.1 * SOFTENING, rel=IDENTITY)
