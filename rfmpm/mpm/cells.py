@@ -10,17 +10,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rfmpm.kernel_tools import Tensor, kernel
+from rfmpm.kernel_tools import kernel
 from rfmpm.mpm.stages import XX, YY
-from rfmpm.mpm.state import Points
+
+
+SMALLEST = 1e-300  # [m3/m]
 
 
 class Cells(NamedTuple):
-    """Sums over the points of each cell, numbered row by row; reals are numbers per cell or point."""
+    """Sums over the points of each cell, numbered row by row."""
 
     of: np.ndarray  # (points,) cell of each point
     gradient: np.ndarray  # (4 points,) velocity gradient: xx, xy, yx, yy [1/s]
-    stress: Tensor  # (points,) each: stress with the mean pressure of the cell [Pa]
+    change: np.ndarray  # (points,) mean pressure of the cell less the point's own, tension positive [Pa]
     volume: np.ndarray  # (cells,) [m3/m]
     sums: np.ndarray  # (cells,) of volume times what is averaged, then the mean
 
@@ -28,56 +30,62 @@ class Cells(NamedTuple):
 def make_cells(count: int, axes) -> Cells:
     """Make the sums of a scene of `count` points."""
     cells = (axes.x.cells + 1) * (axes.y.cells + 1)
-    stress = Tensor(*(np.zeros(count) for _ in Tensor._fields))
-    return Cells(np.zeros(count, np.int32), np.zeros(4 * count), stress, np.zeros(cells), np.zeros(cells))
+    return Cells(np.zeros(count, np.int32), np.zeros(4 * count), np.zeros(count), np.zeros(cells), np.zeros(cells))
 
 
 @kernel
 def sum_dilatation(points, cells, first, last):
-    """Add volume times volumetric strain rate of the points first, ..., last - 1 to their cells."""
+    """Add volume times volumetric strain rate of the points first, ..., last - 1 to their cells.
+
+    Points of one cell mostly follow each other: their sum is kept until the cell changes.
+    """
+    of, gradient, cell, total = cells.of, cells.gradient, cells.of[first], 0.0
     for p in range(first, last):
-        rate = cells.gradient[4 * p + XX] + cells.gradient[4 * p + YY]
-        cells.sums[cells.of[p]] += points.volume[p] * rate
+        if of[p] != cell:
+            cells.sums[cell] += total
+            cell, total = of[p], 0.0
+        total += points.volume[p] * (gradient[4 * p + XX] + gradient[4 * p + YY])
+    cells.sums[cell] += total
 
 
 @kernel
 def share_dilatation(cells, first, last):
     """Replace the volumetric strain rate of the points by the mean of their cells."""
+    gradient = cells.gradient
     for p in range(first, last):
-        half = 0.5 * (cells.sums[cells.of[p]] - cells.gradient[4 * p + XX] - cells.gradient[4 * p + YY])
-        cells.gradient[4 * p + XX] += half
-        cells.gradient[4 * p + YY] += half
+        half = 0.5 * (cells.sums[cells.of[p]] - gradient[4 * p + XX] - gradient[4 * p + YY])
+        gradient[4 * p + XX] += half
+        gradient[4 * p + YY] += half
 
 
 @kernel
 def sum_pressure(points, axes, cells, first, last):
     """Find the cells of the points anew and add volume, and volume times in-plane mean stress, to them."""
-    x, y, pitch = points.position.x, points.position.y, axes.x.cells + 1
+    x, y, pitch, of = points.position.x, points.position.y, axes.x.cells + 1, cells.of
     for p in range(first, last):
-        cells.of[p] = np.int32(y[p] * axes.y.inverse_cell) * pitch + np.int32(x[p] * axes.x.inverse_cell)
+        of[p] = np.int32(y[p] * axes.y.inverse_cell) * pitch + np.int32(x[p] * axes.x.inverse_cell)
+    cell, volume, total = of[first], 0.0, 0.0
     for p in range(first, last):
-        cells.volume[cells.of[p]] += points.volume[p]
-        cells.sums[cells.of[p]] += points.volume[p] * 0.5 * (points.stress.xx[p] + points.stress.yy[p])
+        if of[p] != cell:
+            cells.volume[cell] += volume
+            cells.sums[cell] += total
+            cell, volume, total = of[p], 0.0, 0.0
+        volume += points.volume[p]
+        total += points.volume[p] * 0.5 * (points.stress.xx[p] + points.stress.yy[p])
+    cells.volume[cell] += volume
+    cells.sums[cell] += total
 
 
 @kernel
-def share_pressure(points, cells, first, last):
-    """Put the stress with the mean of the cell in place of the in-plane mean stress into `cells.stress`."""
-    xx, yy = points.stress.xx, points.stress.yy
+def share_pressure(stress, cells, first, last):
+    """Find by how much the mean pressure of the cell differs from that of the points."""
     for p in range(first, last):
-        change = cells.sums[cells.of[p]] - 0.5 * (xx[p] + yy[p])
-        cells.stress.xx[p], cells.stress.yy[p] = xx[p] + change, yy[p] + change
-        cells.stress.xy[p] = points.stress.xy[p]
+        cells.change[p] = cells.sums[cells.of[p]] - 0.5 * (stress.xx[p] + stress.yy[p])
 
 
 @kernel
 def divide(cells):
-    """Turn the sums into means."""
-    for c in range(cells.sums.size):
-        cells.sums[c] = cells.sums[c] / cells.volume[c] if cells.volume[c] > 0.0 else 0.0
-
-
-@kernel
-def with_mean_pressure(points, cells):
-    """The points with the stresses that make the internal force."""
-    return Points(points.position, points.velocity, points.mass, points.volume, cells.stress)
+    """Turn the sums into means; an empty cell keeps its zero."""
+    sums, volume = cells.sums, cells.volume
+    for c in range(sums.size):
+        sums[c] /= max(volume[c], SMALLEST)

@@ -161,16 +161,21 @@ def deform(points, law, history, gradient, dt, tally):
 
 
 @kernel
-def load(points, scratch):
-    """Make what the points bring to the nodes: momentum and force, the latter times the slopes along x and along y."""
+def load(points, pressure, scratch):
+    """Make what the points bring to the nodes: momentum and force, the latter times the slopes along x and along y.
+
+    `pressure`, where given, is added to the in-plane mean stress [Pa].
+    """
     carried, pushed = scratch.motion, scratch.gradient
     for p in range(points.mass.size):
         mass, volume = points.mass[p], -points.volume[p]
-        shear = volume * points.stress.xy[p]
+        xx, yy, shear = points.stress.xx[p], points.stress.yy[p], volume * points.stress.xy[p]
+        if pressure is not None:
+            xx, yy = xx + pressure[p], yy + pressure[p]
         carried[4 * p + X], carried[4 * p + Y] = mass * points.velocity.x[p], mass * points.velocity.y[p]
-        carried[4 * p + FORCE_X], carried[4 * p + FORCE_Y] = shear, volume * points.stress.yy[p]
+        carried[4 * p + FORCE_X], carried[4 * p + FORCE_Y] = shear, volume * yy
         pushed[4 * p + X], pushed[4 * p + Y] = 0.0, 0.0
-        pushed[4 * p + FORCE_X], pushed[4 * p + FORCE_Y] = volume * points.stress.xx[p], shear
+        pushed[4 * p + FORCE_X], pushed[4 * p + FORCE_Y] = volume * xx, shear
 
 
 @kernel

@@ -12,7 +12,6 @@ from rfmpm.mpm.cells import (
     share_pressure,
     sum_dilatation,
     sum_pressure,
-    with_mean_pressure,
 )
 from rfmpm.mpm.stages import (
     Scratch,
@@ -58,7 +57,7 @@ def carry_points(points, law, history, axes, grid, cells, filtered, blend, strai
                 lost = first + first_outside(block, axes)
                 break
             strain(block, part(law, first, last), part(history, first, last), scratch.gradient, dt, tally)
-            box = points_to_grid(block, axes, grid, scratch, box)
+            box = points_to_grid(block, None, axes, grid, scratch, box)
     else:
         cells.sums[:] = 0.0
         for first in range(0, count, BLOCK):
@@ -77,10 +76,10 @@ def carry_points(points, law, history, axes, grid, cells, filtered, blend, strai
         cells.volume[:] = 0.0
         sum_pressure(points, axes, cells, 0, count)
         divide(cells)
-        share_pressure(points, cells, 0, count)
-        loaded = with_mean_pressure(points, cells)
         for first in range(0, count, BLOCK):
-            box = points_to_grid(part(loaded, first, min(first + BLOCK, count)), axes, grid, scratch, box)
+            last = min(first + BLOCK, count)
+            share_pressure(points.stress, cells, first, last)
+            box = points_to_grid(part(points, first, last), cells.change[first:last], axes, grid, scratch, box)
     width = len(scratch.x.like)
     box = box[0], box[1] + width - 1, box[2], box[3] + len(scratch.y.like) - 1
     collect(grid.parts, grid.mass, box, width)
@@ -114,11 +113,14 @@ def strain(points, law, history, gradient, dt, tally):
 
 
 @kernel
-def points_to_grid(points, axes, grid, scratch, box):
-    """Mass, momentum and internal force of a block at its new positions. Returns the box of first nodes so far."""
+def points_to_grid(points, pressure, axes, grid, scratch, box):
+    """Mass, momentum and internal force of a block at its new positions. Returns the box of first nodes so far.
+
+    `pressure`, where given, is added to the points' in-plane mean stress in the force [Pa].
+    """
     locate(axes.x, points.position.x, scratch.x)
     locate(axes.y, points.position.y, scratch.y)
-    load(points, scratch)
+    load(points, pressure, scratch)
     spread(points.mass, scratch, grid)
     return extend(box, scratch, points.mass.size)
 
