@@ -6,6 +6,7 @@ Sulsky, Chen and Schreyer (1994) for the scheme, Nairn and Hammerquist (2021) fo
 from rfmpm.kernel_tools import BLOCK, gather, kernel, part, scatter
 from rfmpm.mpm.stages import (
     accelerate,
+    add_momentum,
     collect,
     deform,
     extend,
@@ -19,7 +20,7 @@ from rfmpm.mpm.stages import (
     rotate,
     spread,
 )
-from rfmpm.mpm.state import CHANGE_X, CHANGE_Y, X, Y
+from rfmpm.mpm.state import CHANGE_X, X, Y
 
 
 @kernel
@@ -31,7 +32,8 @@ def carry_points(points, law, history, axes, grid, filtered, blend, straining, d
     new ones; with zero `flow` and `dt` it only adds.
 
     `filtered`, where given, is the velocity towards which a fraction `blend` of the point's velocity goes (FMPM);
-    `straining`, where given, the velocity that strains the points, whose own is then already up to date (MUSL).
+    `straining`, where given, the velocity that strains the points, whose own is then already up to date (MUSL), beside
+    the one that moves them.
 
     Returns (kinetic energy [J/m], sum of mass times fall [kg m/m], work of stress [J/m], largest squared speed, box of
     nodes touched, index of a point that left the grid or -1).
@@ -43,17 +45,18 @@ def carry_points(points, law, history, axes, grid, filtered, blend, straining, d
         count, block = last - first, part(points, first, last)
         locate(axes.x, block.position.x, scratch.x)
         locate(axes.y, block.position.y, scratch.y)
+        lane = X
         if straining is None:
-            interpolate_slopes(grid.flow, scratch, count, scratch.motion)
+            interpolate_slopes(grid.flow, scratch, count)
             if filtered is not None:
                 interpolate(filtered, scratch, count, scratch.smooth)
                 accelerate(block.velocity, scratch.motion, scratch.smooth, blend)
             else:
                 accelerate(block.velocity, scratch.motion, None, blend)
         else:
-            interpolate(grid.flow, scratch, count, scratch.motion)
-            interpolate_slopes(straining, scratch, count, None)
-        if move(block, axes, scratch.motion, dt, tally):
+            interpolate_slopes(straining, scratch, count)
+            lane = CHANGE_X
+        if move(block, axes, scratch.motion, lane, dt, tally):
             lost = first + first_outside(block, axes)
             break
         rotate(block.stress, scratch.gradient, dt)
@@ -98,15 +101,14 @@ def update_velocities(points, axes, grid, filtered, blend):
     """Update the points' velocities and add their momentum to `grid.straining` at the old positions (MUSL)."""
     scratch = make_scratch(axes)
     for first in range(0, points.mass.size, BLOCK):
-        block = part(points, first, min(first + BLOCK, points.mass.size))
+        last = min(first + BLOCK, points.mass.size)
+        block = part(points, first, last)
         locate(axes.x, block.position.x, scratch.x)
         locate(axes.y, block.position.y, scratch.y)
-        for p in range(block.mass.size):
-            m = block.mass[p]
-            flow = gather(grid.flow, scratch.x, scratch.y, p)
-            vx, vy = block.velocity.x[p] + flow[CHANGE_X], block.velocity.y[p] + flow[CHANGE_Y]
-            if filtered is not None:
-                smooth = gather(filtered, scratch.x, scratch.y, p)
-                vx, vy = vx + blend * (smooth[X] - vx), vy + blend * (smooth[Y] - vy)
-            block.velocity.x[p], block.velocity.y[p] = vx, vy
-            scatter(grid.straining, scratch.x, scratch.y, p, (m * vx, m * vy, 0.0, 0.0))
+        interpolate(grid.flow, scratch, last - first, scratch.motion)
+        if filtered is not None:
+            interpolate(filtered, scratch, last - first, scratch.smooth)
+            accelerate(block.velocity, scratch.motion, scratch.smooth, blend)
+        else:
+            accelerate(block.velocity, scratch.motion, None, blend)
+        add_momentum(block.mass, block.velocity, scratch, grid.straining)

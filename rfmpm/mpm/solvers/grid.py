@@ -74,6 +74,8 @@ def subtract_second_projection(grid, box):
 def divide_straining(grid, box, dt):
     """Turn `grid.straining` from the momentum of the updated points into a velocity; what a wall holds stays held.
 
+    The grid's own velocity goes beside it, so that the points read both at once.
+
     Returns the work [J/m] that the internal forces do on the difference between it and the grid's velocity in mid-step.
     """
     difference = 0.0
@@ -87,6 +89,7 @@ def divide_straining(grid, box, dt):
                     middle = grid.flow[row, column, k] - 0.5 * grid.flow[row, column, CHANGE_X + k]
                     difference += dt * grid.sums[row, column, FORCE_X + k] * (v - middle)
                 grid.straining[row, column, k] = v
+                grid.straining[row, column, CHANGE_X + k] = grid.flow[row, column, k]
     return difference
 
 
