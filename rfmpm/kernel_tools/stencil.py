@@ -7,7 +7,7 @@ from numba.extending import overload
 
 from rfmpm.kernel_tools.jit import define, inline_options, inlined
 
-BLOCK = 264  # points; what the stages pass on stays in the first two caches, and rows of a table in sets of their own
+BLOCK = 520  # points; what the stages pass on stays in the first two caches, and rows of a table in sets of their own
 
 
 class Stencil(NamedTuple):

@@ -22,6 +22,7 @@ from rfmpm.kernel_tools import (
     put,
     put_lanes,
     put_stencil,
+    scatter,
     scatter_rows,
     scatter_slopes,
 )
@@ -36,7 +37,7 @@ class Scratch(NamedTuple):
 
     x: Stencil
     y: Stencil
-    motion: np.ndarray  # grid velocity x y, its change x y [m/s]
+    motion: np.ndarray  # grid velocity x y, its change x y (MUSL: straining velocity, grid velocity) [m/s]
     smooth: np.ndarray  # filtered velocity x y [m/s]
     gradient: np.ndarray  # of the velocity: xx, xy, yx, yy [1/s]
 
@@ -80,12 +81,11 @@ def interpolate(values, scratch, count, out):
 
 
 @kernel
-def interpolate_slopes(values, scratch, count, out):
-    """Grid to point: the four values of the nodes into `out`, where given, and the gradient of the first two."""
+def interpolate_slopes(values, scratch, count):
+    """Grid to point: the four values of the nodes and the gradient of the first two."""
     for p in range(count):
         value, along_x, along_y = gather_slopes(values, scratch.x, scratch.y, p)
-        if out is not None:
-            put_lanes(out, p, value)
+        put_lanes(scratch.motion, p, value)
         put_lanes(scratch.gradient, p, (along_x[X], along_y[X], along_x[Y], along_y[Y]))
 
 
@@ -100,17 +100,18 @@ def accelerate(velocity, motion, smooth, blend):
 
 
 @kernel
-def move(points, axes, motion, dt, tally):
-    """Move the points with the grid's velocity. Returns the number of points that are no longer within the grid."""
+def move(points, axes, motion, lane, dt, tally):
+    """Move the points with the velocity in `motion`, from value `lane` on. Returns the number of points outside."""
     length, height = axes.x.cells / axes.x.inverse_cell, axes.y.cells / axes.y.inverse_cell
     outside = 0
     for p in range(points.mass.size):
         mass, vx, vy = points.mass[p], points.velocity.x[p], points.velocity.y[p]
         speed = vx * vx + vy * vy
         tally.kinetic[p] += 0.5 * mass * speed
-        tally.fall[p] -= mass * dt * motion[4 * p + Y]
+        tally.fall[p] -= mass * dt * motion[4 * p + lane + Y]
         tally.fastest[p] = max(tally.fastest[p], speed)
-        x, y = points.position.x[p] + dt * motion[4 * p + X], points.position.y[p] + dt * motion[4 * p + Y]
+        x = points.position.x[p] + dt * motion[4 * p + lane + X]
+        y = points.position.y[p] + dt * motion[4 * p + lane + Y]
         points.position.x[p], points.position.y[p] = x, y
         outside += not ((x >= 0.0) & (x <= length) & (y >= 0.0) & (y <= height))
     return outside
@@ -162,7 +163,7 @@ def deform(points, law, history, gradient, dt, tally):
 
 @kernel
 def load(points, pressure, scratch):
-    """Make what the points bring to the nodes: momentum and force, the latter times the slopes along x and along y.
+    """Make what the points bring to the nodes: momentum; force in terms of the slopes along y, and of those along x.
 
     `pressure`, where given, is added to the in-plane mean stress [Pa].
     """
@@ -199,6 +200,14 @@ def extend(box, scratch, count):
         left, right = min(left, x[p]), max(right, x[p])
         low, high = min(low, y[p]), max(high, y[p])
     return min(box[0], int(left)), max(box[1], int(right)), min(box[2], int(low)), max(box[3], int(high))
+
+
+@kernel
+def add_momentum(mass, velocity, scratch, values):
+    """Point to grid: add the momentum m v to the first two values of the nodes."""
+    for p in range(mass.size):
+        m = mass[p]
+        scatter(values, scratch.x, scratch.y, p, (m * velocity.x[p], m * velocity.y[p], 0.0, 0.0))
 
 
 @kernel

@@ -25,7 +25,7 @@ class Grid(NamedTuple):
     flow: np.ndarray  # (rows, columns, 4): velocity x y, its change over the step x y [m/s]
     filtered: np.ndarray  # (rows, columns, 4): momentum of the second projection x y, then FMPM's velocity x y [m/s]
     parts: np.ndarray  # (rows, columns, 4): mass [kg/m] of the nodes i, i + 1, ... from points whose first is i
-    straining: np.ndarray  # (rows, columns, 4): momentum of the updated points x y, then MUSL's velocity x y [m/s]
+    straining: np.ndarray  # (rows, columns, 4): momentum of the updated points; then MUSL's velocity, the grid's
 
 
 X, Y, FORCE_X, FORCE_Y = range(4)

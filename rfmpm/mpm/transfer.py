@@ -3,8 +3,6 @@
 Sulsky, Chen and Schreyer (1994) for the scheme, Nairn and Hammerquist (2021) for FMPM.
 """
 
-from math import inf
-
 from rfmpm.kernel_tools import BLOCK, gather, kernel, part, scatter
 from rfmpm.mpm.cells import (
     divide,
@@ -16,6 +14,7 @@ from rfmpm.mpm.cells import (
 from rfmpm.mpm.stages import (
     Scratch,
     accelerate,
+    add_momentum,
     collect,
     deform,
     extend,
@@ -29,7 +28,7 @@ from rfmpm.mpm.stages import (
     rotate,
     spread,
 )
-from rfmpm.mpm.state import CHANGE_X, CHANGE_Y, X, Y
+from rfmpm.mpm.state import CHANGE_X, X, Y
 
 
 @kernel
@@ -42,7 +41,8 @@ def carry_points(points, law, history, axes, grid, cells, filtered, blend, strai
     the sums over all points before the stress and before the force make it three.
 
     `filtered`, where given, is the velocity towards which a fraction `blend` of the point's velocity goes (FMPM);
-    `straining`, where given, the velocity that strains the points, whose own is then already up to date (MUSL).
+    `straining`, where given, the velocity that strains the points, whose own is then already up to date (MUSL), beside
+    the one that moves them.
 
     Returns (kinetic energy [J/m], sum of mass times fall [kg m/m], work of stress and its plastic part [J/m], largest
     squared speed, box of nodes touched, index of a point that left the grid or -1).
@@ -59,31 +59,41 @@ def carry_points(points, law, history, axes, grid, cells, filtered, blend, strai
             strain(block, part(law, first, last), part(history, first, last), scratch.gradient, dt, tally)
             box = points_to_grid(block, None, axes, grid, scratch, box)
     else:
-        cells.sums[:] = 0.0
-        for first in range(0, count, BLOCK):
-            last = min(first + BLOCK, count)
-            block, own = part(points, first, last), keep_gradient(scratch, cells.gradient[4 * first : 4 * last])
-            if grid_to_points(block, axes, grid, own, filtered, blend, straining, dt, tally):
-                return 0.0, 0.0, 0.0, 0.0, inf, box, first + first_outside(block, axes)
-            sum_dilatation(points, cells, first, last)
-        divide(cells)
-        for first in range(0, count, BLOCK):
-            last = min(first + BLOCK, count)
-            share_dilatation(cells, first, last)
-            gradient = cells.gradient[4 * first : 4 * last]
-            strain(part(points, first, last), part(law, first, last), part(history, first, last), gradient, dt, tally)
-        cells.sums[:] = 0.0
-        cells.volume[:] = 0.0
-        sum_pressure(points, axes, cells, 0, count)
-        divide(cells)
-        for first in range(0, count, BLOCK):
-            last = min(first + BLOCK, count)
-            share_pressure(points.stress, cells, first, last)
-            box = points_to_grid(part(points, first, last), cells.change[first:last], axes, grid, scratch, box)
+        lost, box = carry_by_cells(
+            points, law, history, axes, grid, cells, filtered, blend, straining, dt, scratch, tally, box
+        )
     width = len(scratch.x.like)
     box = box[0], box[1] + width - 1, box[2], box[3] + len(scratch.y.like) - 1
     collect(grid.parts, grid.mass, box, width)
     return tally.kinetic.sum(), tally.fall.sum(), tally.work.sum(), tally.plastic.sum(), tally.fastest.max(), box, lost
+
+
+@kernel
+def carry_by_cells(points, law, history, axes, grid, cells, filtered, blend, straining, dt, scratch, tally, box):
+    """Carry the points with means over the points of a cell. Returns the point that left the grid or -1, and the box."""
+    count = points.mass.size
+    cells.sums[:] = 0.0
+    for first in range(0, count, BLOCK):
+        last = min(first + BLOCK, count)
+        block, own = part(points, first, last), keep_gradient(scratch, cells.gradient[4 * first : 4 * last])
+        if grid_to_points(block, axes, grid, own, filtered, blend, straining, dt, tally):
+            return first + first_outside(block, axes), box
+        sum_dilatation(points, cells, first, last)
+    divide(cells)
+    for first in range(0, count, BLOCK):
+        last = min(first + BLOCK, count)
+        share_dilatation(cells, first, last)
+        gradient = cells.gradient[4 * first : 4 * last]
+        strain(part(points, first, last), part(law, first, last), part(history, first, last), gradient, dt, tally)
+    cells.sums[:] = 0.0
+    cells.volume[:] = 0.0
+    sum_pressure(points, axes, cells, 0, count)
+    divide(cells)
+    for first in range(0, count, BLOCK):
+        last = min(first + BLOCK, count)
+        share_pressure(points.stress, cells, first, last)
+        box = points_to_grid(part(points, first, last), cells.change[first:last], axes, grid, scratch, box)
+    return -1, box
 
 
 @kernel
@@ -92,17 +102,18 @@ def grid_to_points(points, axes, grid, scratch, filtered, blend, straining, dt, 
     count = points.mass.size
     locate(axes.x, points.position.x, scratch.x)
     locate(axes.y, points.position.y, scratch.y)
+    lane = X
     if straining is None:
-        interpolate_slopes(grid.flow, scratch, count, scratch.motion)
+        interpolate_slopes(grid.flow, scratch, count)
         if filtered is not None:
             interpolate(filtered, scratch, count, scratch.smooth)
             accelerate(points.velocity, scratch.motion, scratch.smooth, blend)
         else:
             accelerate(points.velocity, scratch.motion, None, blend)
     else:
-        interpolate(grid.flow, scratch, count, scratch.motion)
-        interpolate_slopes(straining, scratch, count, None)
-    return move(points, axes, scratch.motion, dt, tally)
+        interpolate_slopes(straining, scratch, count)
+        lane = CHANGE_X
+    return move(points, axes, scratch.motion, lane, dt, tally)
 
 
 @kernel
@@ -160,15 +171,14 @@ def update_velocities(points, axes, grid, filtered, blend):
     """Update the points' velocities and add their momentum to `grid.straining` at the old positions (MUSL)."""
     scratch = make_scratch(axes)
     for first in range(0, points.mass.size, BLOCK):
-        block = part(points, first, min(first + BLOCK, points.mass.size))
+        last = min(first + BLOCK, points.mass.size)
+        block = part(points, first, last)
         locate(axes.x, block.position.x, scratch.x)
         locate(axes.y, block.position.y, scratch.y)
-        for p in range(block.mass.size):
-            m = block.mass[p]
-            flow = gather(grid.flow, scratch.x, scratch.y, p)
-            vx, vy = block.velocity.x[p] + flow[CHANGE_X], block.velocity.y[p] + flow[CHANGE_Y]
-            if filtered is not None:
-                smooth = gather(filtered, scratch.x, scratch.y, p)
-                vx, vy = vx + blend * (smooth[X] - vx), vy + blend * (smooth[Y] - vy)
-            block.velocity.x[p], block.velocity.y[p] = vx, vy
-            scatter(grid.straining, scratch.x, scratch.y, p, (m * vx, m * vy, 0.0, 0.0))
+        interpolate(grid.flow, scratch, last - first, scratch.motion)
+        if filtered is not None:
+            interpolate(filtered, scratch, last - first, scratch.smooth)
+            accelerate(block.velocity, scratch.motion, scratch.smooth, blend)
+        else:
+            accelerate(block.velocity, scratch.motion, None, blend)
+        add_momentum(block.mass, block.velocity, scratch, grid.straining)

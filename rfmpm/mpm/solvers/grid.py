@@ -72,13 +72,17 @@ def subtract_second_projection(grid, box):
 
 @kernel
 def divide_straining(grid, box):
-    """Turn `grid.straining` from the momentum of the updated points into a velocity; what a wall holds stays held."""
+    """Turn `grid.straining` from the momentum of the updated points into a velocity; what a wall holds stays held.
+
+    The grid's own velocity goes beside it, so that the points read both at once.
+    """
     for row in range(box[2], box[3] + 1):
         for column in range(box[0], box[1] + 1):
             m = grid.mass[row, column]
             for k in range(2):
                 is_free = m > 0.0 and grid.flow[row, column, k] != 0.0
                 grid.straining[row, column, k] = grid.straining[row, column, k] / m if is_free else 0.0
+                grid.straining[row, column, CHANGE_X + k] = grid.flow[row, column, k]
 
 
 @kernel
