@@ -5,17 +5,11 @@ from typing import NamedTuple
 
 from rfmpm.kernel_tools import Tensor
 from rfmpm.mpm.laws.elastic import hooke
-from rfmpm.mpm.laws.frictional import Angle, build_frictional, cosine, sine, weakened, yielded
+from rfmpm.mpm.laws.frictional import Angle, build_frictional, strength
 from rfmpm.mpm.laws.von_mises import PlasticHistory
 
 THIRD = 1.0 / 3.0
-
-
-class Invariants(NamedTuple):
-    """Mean stress p, tension positive, and sqrt(J2) [Pa]."""
-
-    mean: float
-    shear: float
+SMALLEST = 1e-300  # [Pa]; keeps a deviator of nothing finite
 
 
 class DruckerPrager(NamedTuple):
@@ -24,8 +18,8 @@ class DruckerPrager(NamedTuple):
     The engine is plane strain, so the cone is the one that flows there at the strength c, phi and with the dilation psi
     of Mohr-Coulomb: with b = sin(psi) / sqrt(1 + sin2(psi) / 3) for the flow, a = w sin(phi) and k = w c cos(phi) with
     w = sqrt(1 + sin2(psi) / 3) / (1 + sin(phi) sin(psi) / 3). For psi = phi that is the usual plane-strain match (de
-    Souza Neto et al. 2008, eq. 6.125), for psi = 0 it is a = sin(phi). A compression cone would be too strong by up to
-    a third.
+    Souza Neto et al. 2008, section 6.4), for psi = 0 it is a = sin(phi). A compression cone would be 30 % too strong at
+    phi = 20 degrees, so there is no other match.
 
     Flow: b in shear, associated on the cut-off, which is a bound of the mean stress here; both where they meet. A
     cut-off beyond the apex c cot(phi) never acts, and it does not soften. The plastic strain is that of the deviator.
@@ -40,32 +34,28 @@ class DruckerPrager(NamedTuple):
     tension: float  # largest mean stress; infinite for none [Pa]
     softening: float  # one over the plastic strain at which the residual is reached; 0 for no softening [-]
 
-    def relax(self, trial, softened):
-        """Return mean stress and sqrt(J2) to the surface of a strength softened so far; tell the plastic strain."""
-        s, p = sine(self.friction, softened), sine(self.dilation, softened)
-        root = sqrt(1.0 + THIRD * p * p)
-        match = root / (1.0 + THIRD * s * p)
-        slope, flow = match * s, p / root
-        limit = match * weakened(self.peak, self.residual, softened) * cosine(s)
-        bulk = self.lame + 2.0 * THIRD * self.shear
-        g = max(0.0, trial.shear + slope * trial.mean - limit) / (self.shear + bulk * slope * flow)
-        highest = min(self.tension, limit / slope if slope > 0.0 else inf)
-        mean, shear = trial.mean - g * bulk * flow, trial.shear - g * self.shear
-        if mean > highest:
-            mean, shear = highest, min(trial.shear, max(0.0, limit - slope * highest))
-        return Invariants(mean, shear), (trial.shear - shear) * sqrt(THIRD) / self.shear
-
     def update_stress(self, stress, strain_increment, history):
         """Elastic predictor and exact return to cone, cut-off, their corner or the apex."""
         trial = hooke(self.lame, self.shear, stress, strain_increment)
         mean = (trial.xx + trial.yy + trial.zz) * THIRD
         sxx, syy, szz = trial.xx - mean, trial.yy - mean, trial.zz - mean
-        shear = sqrt(0.5 * (sxx * sxx + syy * syy + szz * szz) + trial.xy * trial.xy)
-        relaxed, growth = yielded(self, Invariants(mean, shear), history)
-        scale = relaxed.shear / shear if shear > 0.0 else 0.0
-        mean = relaxed.mean
+        tau = sqrt(0.5 * (sxx * sxx + syy * syy + szz * szz) + trial.xy * trial.xy)
+        cohesion, s, cosine, p = strength(self, history)
+        root = sqrt(1.0 + THIRD * p * p)
+        match = root / (1.0 + THIRD * s * p)
+        slope, flow, limit = match * s, p / root, match * cohesion * cosine
+        beyond = tau + slope * mean - limit
+        if beyond <= 0.0 and mean <= self.tension:
+            return trial, history
+        bulk = self.lame + 2.0 * THIRD * self.shear
+        g = max(0.0, beyond) / (self.shear + bulk * slope * flow)
+        mean, relaxed = mean - g * bulk * flow, tau - g * self.shear
+        highest = min(self.tension, limit / slope if slope > 0.0 else inf)
+        if mean > highest:
+            mean, relaxed = highest, min(tau, max(0.0, limit - slope * highest))
+        scale = relaxed / max(tau, SMALLEST)
         updated = Tensor(mean + scale * sxx, mean + scale * syy, mean + scale * szz, scale * trial.xy)
-        return updated, PlasticHistory(history.plastic_strain + growth)
+        return updated, PlasticHistory(history.plastic_strain + (tau - relaxed) * sqrt(THIRD) / self.shear)
 
     @classmethod
     def build(cls, material, cell, count, cohesion):

@@ -1,17 +1,19 @@
-"""What the frictional laws share: strength that softens with plastic strain, taken at the end of the step."""
+"""What the frictional laws share: cohesion, friction and dilation that fall linearly with plastic strain.
 
-from math import radians, sin, sqrt
-from typing import NamedTuple, Protocol
+The strength of a step is that of the plastic strain at its start: it lags behind by what falls within one step, at most
+the growth of plastic strain over the strain at the residual, as a share of the whole fall. The lag does not add up.
+"""
+
+from math import radians, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
-from rfmpm.kernel_tools import generic, inlined
+from rfmpm.kernel_tools import inlined
 from rfmpm.mpm.laws.elastic import lame_constants
 from rfmpm.mpm.laws.von_mises import PlasticHistory
 
-PASSES = 12  # of the secant method; three where cohesion alone softens, four or five where the angles do too
-PRECISION = 1e-15  # of the plastic strain at the end of the step [-]
-STEEPEST = -0.01  # the slope of the residual above which softening outruns unloading; the secant stays below it
+SINE_SERIES = tuple(-1.0 / (k * (k + 1.0)) for k in range(2, 18, 2))  # from one term to the next
 
 
 class Angle(NamedTuple):
@@ -19,21 +21,15 @@ class Angle(NamedTuple):
 
     peak: float  # [rad]
     residual: float  # [rad]
-    sin_peak: float
-    sin_residual: float
 
 
-class FrictionalLaw(Protocol):
-    """What `yielded` asks of a law: `softening` [-], one over the plastic strain at which the residual is reached."""
+class Strength(NamedTuple):
+    """Cohesion and angles of one point at one moment."""
 
-    def relax(self, trial, softened):
-        """Return `trial`, a record of stress invariants, to the yield surface, and tell the growth of plastic strain.
-
-        `softened` is the share of the way from peak to residual at which the strength stands.
-        """
-
-
-relax = generic(FrictionalLaw.relax)
+    cohesion: float  # [Pa]
+    sin_friction: float
+    cos_friction: float
+    sin_dilation: float
 
 
 @inlined
@@ -43,53 +39,31 @@ def softening_strain(history):
 
 
 @inlined
-def sine(angle, softened):
-    """Sine of an angle that falls linearly from peak to residual."""
-    if softened <= 0.0:
-        return angle.sin_peak
-    if softened >= 1.0:
-        return angle.sin_residual
-    return sin(angle.peak + softened * (angle.residual - angle.peak))
+def sine(angle):
+    """Sine of an angle of at most 80 degrees to 1e-14, by its series.
 
-
-@inlined
-def cosine(sine):
-    """Cosine of an angle in the first quadrant."""
-    return sqrt(1.0 - sine * sine)
-
-
-@inlined
-def weakened(peak, residual, softened):
-    """Cohesion that falls linearly from peak to residual."""
-    return peak + min(softened, 1.0) * (residual - peak)
-
-
-@inlined
-def yielded(law, trial, history):
-    """Relaxed invariants and growth of the plastic strain, the strength being that of the end of the step.
-
-    The end's plastic strain k solves start + growth(k) - k = 0, by the secant method. The stress lies on the surface
-    of the last k tried whether or not that has converged, which it does unless softening outruns unloading.
+    A call would keep the compiler from updating several points at once.
     """
-    start = softening_strain(history)
-    relaxed, growth = relax(law, trial, start * law.softening)
-    if growth == 0.0 or law.softening == 0.0:
-        return relaxed, growth
-    before, before_excess, strain = start, growth, start + growth
-    for _ in range(PASSES):
-        relaxed, growth = relax(law, trial, strain * law.softening)
-        excess = start + growth - strain
-        if abs(excess) <= PRECISION * (1.0 + strain) or strain == before:
-            break
-        slope = min(STEEPEST, (excess - before_excess) / (strain - before))
-        before, before_excess, strain = strain, excess, max(start, strain - excess / slope)
-    return relaxed, growth
+    square, term, total = angle * angle, angle, angle
+    for factor in SINE_SERIES:
+        term *= factor * square
+        total += term
+    return total
 
 
-def angle(peak_deg: float, residual_deg: float) -> Angle:
-    """Make an angle of friction or dilation from its peak and residual [degrees]."""
-    peak, residual = radians(peak_deg), radians(residual_deg)
-    return Angle(peak, residual, sin(peak), sin(residual))
+@inlined
+def fallen(falling, share):
+    """Value after that share of the way from `peak` to `residual`."""
+    return falling.peak + share * (falling.residual - falling.peak)
+
+
+@inlined
+def strength(law, history):
+    """Strength of a law with `peak`, `residual`, `friction`, `dilation` and `softening`, after that history."""
+    share = min(1.0, softening_strain(history) * law.softening)
+    sin_friction = sine(fallen(law.friction, share))
+    cos_friction = sqrt(1.0 - sin_friction * sin_friction)
+    return Strength(fallen(law, share), sin_friction, cos_friction, sine(fallen(law.dilation, share)))
 
 
 def build_frictional(law, material, cell, count, cohesion):
@@ -114,8 +88,8 @@ def build_frictional(law, material, cell, count, cohesion):
         shear,
         peak,
         peak * ratio,
-        angle(material.friction_angle_deg, material.residual_friction_angle_deg),
-        angle(material.dilation_angle_deg, material.residual_dilation_angle_deg),
+        Angle(radians(material.friction_angle_deg), radians(material.residual_friction_angle_deg)),
+        Angle(radians(material.dilation_angle_deg), radians(material.residual_dilation_angle_deg)),
         np.inf if material.tension_cutoff_kpa is None else material.tension_cutoff_kpa * 1e3,
         softening,
     )

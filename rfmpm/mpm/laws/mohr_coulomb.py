@@ -1,11 +1,11 @@
-"""Mohr-Coulomb plasticity with a tension cut-off; cohesion, friction and dilation soften linearly to residual values."""
+"""Mohr-Coulomb plasticity with a tension cut-off; cohesion, friction and dilation soften linearly to residuals."""
 
 from math import sqrt
 from typing import NamedTuple
 
 from rfmpm.kernel_tools import Tensor, inlined
 from rfmpm.mpm.laws.elastic import hooke
-from rfmpm.mpm.laws.frictional import Angle, build_frictional, cosine, sine, weakened, yielded
+from rfmpm.mpm.laws.frictional import Angle, build_frictional, strength
 from rfmpm.mpm.laws.von_mises import PlasticHistory
 
 THIRD = 1.0 / 3.0
@@ -24,8 +24,8 @@ class Principal(NamedTuple):
 def return_to_shear(trial, limit, s, p, lame, shear):
     """Return a trial stress beyond the Mohr-Coulomb pyramid to its plane, edge or apex.
 
-    `limit` is 2 c cos(phi), `s` sin(phi), `p` sin(psi). De Souza Neto et al. (2008), box 8.5, with both multipliers of
-    an edge solved at once; edge and apex are told by the order of the returned stresses (Clausen et al. 2007).
+    `limit` is 2 c cos(phi), `s` sin(phi), `p` sin(psi). De Souza Neto et al. (2008), section 8.2, with both multipliers
+    of an edge solved at once; edge and apex are told by the order of the returned stresses (Clausen et al. 2007).
     """
     major, middle, minor = trial.major, trial.middle, trial.minor
     bulge, up, down = 2.0 * lame * p, 2.0 * shear * (1.0 + p), 2.0 * shear * (1.0 - p)
@@ -77,6 +77,28 @@ def return_to_both(trial, tension, limit, s, p, lame, shear):
     return Principal(tension, min(tension, max(minor, middle)), minor)
 
 
+@inlined
+def is_within(stress, limit, s):
+    """Whether principal stresses are on or within the Mohr-Coulomb pyramid."""
+    return (1.0 + s) * stress.major - (1.0 - s) * stress.minor <= limit
+
+
+@inlined
+def relax(trial, tension, limit, s, p, lame, shear):
+    """Return principal stresses to pyramid and cut-off. Returns them and the growth of the plastic strain."""
+    relaxed = trial
+    if not is_within(trial, limit, s):
+        relaxed = return_to_shear(trial, limit, s, p, lame, shear)
+    if relaxed.major > tension:
+        relaxed = return_to_tension(trial, tension, lame, shear)
+        if not is_within(relaxed, limit, s):
+            relaxed = return_to_both(trial, tension, limit, s, p, lame, shear)
+    a, b, c = trial.major - relaxed.major, trial.middle - relaxed.middle, trial.minor - relaxed.minor
+    mean = (a + b + c) * THIRD
+    a, b, c = a - mean, b - mean, c - mean
+    return relaxed, sqrt(2.0 * THIRD * (a * a + b * b + c * c)) / (2.0 * shear)
+
+
 class MohrCoulomb(NamedTuple):
     """Drained soil: (s1 - s3) + (s1 + s3) sin(phi) <= 2 c cos(phi), and s1 <= the tension cut-off.
 
@@ -96,24 +118,6 @@ class MohrCoulomb(NamedTuple):
     tension: float  # largest principal stress; infinite for none [Pa]
     softening: float  # one over the plastic strain at which the residual is reached; 0 for no softening [-]
 
-    def relax(self, trial, softened):
-        """Return principal stresses to the surface of a strength softened so far, and tell the plastic strain."""
-        s, p = sine(self.friction, softened), sine(self.dilation, softened)
-        limit = 2.0 * weakened(self.peak, self.residual, softened) * cosine(s)
-        if (1.0 + s) * trial.major - (1.0 - s) * trial.minor <= limit and trial.major <= self.tension:
-            return trial, 0.0
-        relaxed = trial
-        if (1.0 + s) * trial.major - (1.0 - s) * trial.minor > limit:
-            relaxed = return_to_shear(trial, limit, s, p, self.lame, self.shear)
-        if relaxed.major > self.tension:
-            relaxed = return_to_tension(trial, self.tension, self.lame, self.shear)
-            if (1.0 + s) * relaxed.major - (1.0 - s) * relaxed.minor > limit:
-                relaxed = return_to_both(trial, self.tension, limit, s, p, self.lame, self.shear)
-        a, b, c = trial.major - relaxed.major, trial.middle - relaxed.middle, trial.minor - relaxed.minor
-        mean = (a + b + c) * THIRD
-        a, b, c = a - mean, b - mean, c - mean
-        return relaxed, sqrt(2.0 * THIRD * (a * a + b * b + c * c)) / (2.0 * self.shear)
-
     def update_stress(self, stress, strain_increment, history):
         """Elastic predictor and exact return in principal stresses, two of which lie in the plane."""
         trial = hooke(self.lame, self.shear, stress, strain_increment)
@@ -121,7 +125,11 @@ class MohrCoulomb(NamedTuple):
         radius = sqrt(half * half + trial.xy * trial.xy)
         high, low = mean + radius, mean - radius
         principal = Principal(max(high, trial.zz), max(low, min(high, trial.zz)), min(low, trial.zz))
-        relaxed, growth = yielded(self, principal, history)
+        cohesion, s, cosine, p = strength(self, history)
+        limit = 2.0 * cohesion * cosine
+        if is_within(principal, limit, s) and principal.major <= self.tension:
+            return trial, history
+        relaxed, growth = relax(principal, self.tension, limit, s, p, self.lame, self.shear)
         high_after = relaxed.middle if trial.zz >= high else relaxed.major
         low_after = relaxed.middle if trial.zz <= low else relaxed.minor
         across = relaxed.major + relaxed.middle + relaxed.minor - high_after - low_after
