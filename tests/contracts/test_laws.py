@@ -62,8 +62,8 @@ def drucker_prager_excess(stress, strain):
     return max(root_j2(stress) + slope * (mean - cohesion / np.tan(friction)), mean - 8e3)
 
 
-# How far a stress is beyond yield [Pa], after a plastic strain, and whether that is the one at the end of the step or at
-# its start (the strength lags by a step). A new law adds its line.
+# How far a stress is beyond yield [Pa], after a plastic strain, and whether that is the one at the end or at the start of
+# the step (the strength lags by a step). A new law adds its line.
 EXCESS = {
     "elastic": (lambda stress, strain: -np.inf, "end"),
     "von_mises": (von_mises_excess, "end"),

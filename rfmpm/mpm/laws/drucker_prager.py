@@ -4,11 +4,8 @@ from math import inf, sqrt
 from typing import NamedTuple
 
 from rfmpm.kernel_tools import Tensor
-from rfmpm.mpm.laws.elastic import hooke
-from rfmpm.mpm.laws.frictional import Angle, build_frictional, strength
-from rfmpm.mpm.laws.von_mises import PlasticHistory
+from rfmpm.mpm.laws.frictional import THIRD, Angle, FrictionalHistory, build_frictional, predict, strength
 
-THIRD = 1.0 / 3.0
 SMALLEST = 1e-300  # [Pa]; keeps a deviator of nothing finite
 
 
@@ -36,26 +33,28 @@ class DruckerPrager(NamedTuple):
 
     def update_stress(self, stress, strain_increment, history):
         """Elastic predictor and exact return to cone, cut-off, their corner or the apex."""
-        trial = hooke(self.lame, self.shear, stress, strain_increment)
-        mean = (trial.xx + trial.yy + trial.zz) * THIRD
+        trial, mean, opening = predict(self, stress, strain_increment, history.opening)
         sxx, syy, szz = trial.xx - mean, trial.yy - mean, trial.zz - mean
         tau = sqrt(0.5 * (sxx * sxx + syy * syy + szz * szz) + trial.xy * trial.xy)
         cohesion, s, cosine, p = strength(self, history)
         root = sqrt(1.0 + THIRD * p * p)
         match = root / (1.0 + THIRD * s * p)
-        slope, flow, limit = match * s, p / root, match * cohesion * cosine
+        slope, limit = match * s, match * cohesion * cosine
+        flow = 0.0 if opening > 0.0 else p / root
         beyond = tau + slope * mean - limit
         if beyond <= 0.0 and mean <= self.tension:
-            return trial, history
+            return trial, FrictionalHistory(history.plastic_strain, opening)
         bulk = self.lame + 2.0 * THIRD * self.shear
         g = max(0.0, beyond) / (self.shear + bulk * slope * flow)
         mean, relaxed = mean - g * bulk * flow, tau - g * self.shear
         highest = min(self.tension, limit / slope if slope > 0.0 else inf)
         if mean > highest:
+            opening += (mean - highest) / bulk
             mean, relaxed = highest, min(tau, max(0.0, limit - slope * highest))
         scale = relaxed / max(tau, SMALLEST)
         updated = Tensor(mean + scale * sxx, mean + scale * syy, mean + scale * szz, scale * trial.xy)
-        return updated, PlasticHistory(history.plastic_strain + (tau - relaxed) * sqrt(THIRD) / self.shear)
+        growth = (tau - relaxed) * sqrt(THIRD) / self.shear
+        return updated, FrictionalHistory(history.plastic_strain + growth, opening)
 
     @classmethod
     def build(cls, material, cell, count, cohesion):

@@ -1,7 +1,11 @@
-"""What the frictional laws share: cohesion, friction and dilation that fall linearly with plastic strain.
+"""What the frictional laws share: strength that falls linearly with plastic strain, and the gap of soil that opened.
 
 The strength of a step is that of the plastic strain at its start: it lags behind by what falls within one step, at most
 the growth of plastic strain over the strain at the residual, as a share of the whole fall. The lag does not add up.
+
+Soil pulled apart beyond its apex opens, and bears compression again only when it has closed: until then its mean stress
+does not fall below zero and shearing does not dilate it (after Dunatunga and Kamrin 2015, who tell by the density).
+Without this, soil that flew apart would be stiff on landing at whatever volume it then has.
 """
 
 from math import radians, sqrt
@@ -9,10 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rfmpm.kernel_tools import inlined
-from rfmpm.mpm.laws.elastic import lame_constants
-from rfmpm.mpm.laws.von_mises import PlasticHistory
+from rfmpm.kernel_tools import Tensor, inlined
+from rfmpm.mpm.laws.elastic import hooke, lame_constants
 
+THIRD = 1.0 / 3.0
 SINE_SERIES = tuple(-1.0 / (k * (k + 1.0)) for k in range(2, 18, 2))  # from one term to the next
 
 
@@ -21,6 +25,13 @@ class Angle(NamedTuple):
 
     peak: float  # [rad]
     residual: float  # [rad]
+
+
+class FrictionalHistory(NamedTuple):
+    """What plastic flow leaves behind."""
+
+    plastic_strain: float  # equivalent, of the deviator: integral of sqrt(2/3 de_p : de_p) [-]
+    opening: float  # volumetric strain by which the soil is open [-]
 
 
 class Strength(NamedTuple):
@@ -66,6 +77,20 @@ def strength(law, history):
     return Strength(fallen(law, share), sin_friction, cos_friction, sine(fallen(law.dilation, share)))
 
 
+@inlined
+def predict(law, stress, strain_increment, opening):
+    """Elastic predictor; an opening closes before the mean stress falls below zero.
+
+    Returns (trial stress, its mean, opening left).
+    """
+    trial = hooke(law.lame, law.shear, stress, strain_increment)
+    mean, bulk = THIRD * (trial.xx + trial.yy + trial.zz), law.lame + 2.0 * THIRD * law.shear
+    closing = min(opening, max(0.0, -mean / bulk))
+    relief = bulk * closing
+    raised = Tensor(trial.xx + relief, trial.yy + relief, trial.zz + relief, trial.xy)
+    return raised, mean + relief, opening - closing
+
+
 def build_frictional(law, material, cell, count, cohesion):
     """Make a law of frictional soil and its history; arguments as for `VonMises.build`.
 
@@ -93,4 +118,4 @@ def build_frictional(law, material, cell, count, cohesion):
         np.inf if material.tension_cutoff_kpa is None else material.tension_cutoff_kpa * 1e3,
         softening,
     )
-    return made, PlasticHistory(np.zeros(count))
+    return made, FrictionalHistory(np.zeros(count), np.zeros(count))

@@ -4,11 +4,8 @@ from math import sqrt
 from typing import NamedTuple
 
 from rfmpm.kernel_tools import Tensor, inlined
-from rfmpm.mpm.laws.elastic import hooke
-from rfmpm.mpm.laws.frictional import Angle, build_frictional, strength
-from rfmpm.mpm.laws.von_mises import PlasticHistory
+from rfmpm.mpm.laws.frictional import THIRD, Angle, FrictionalHistory, build_frictional, predict, strength
 
-THIRD = 1.0 / 3.0
 SMALLEST = 1e-300  # keeps the direction of a stress without direction finite
 
 
@@ -85,7 +82,10 @@ def is_within(stress, limit, s):
 
 @inlined
 def relax(trial, tension, limit, s, p, lame, shear):
-    """Return principal stresses to pyramid and cut-off. Returns them and the growth of the plastic strain."""
+    """Return principal stresses to pyramid and cut-off.
+
+    Returns (them, growth of the plastic strain, volumetric strain of opening at the apex of either).
+    """
     relaxed = trial
     if not is_within(trial, limit, s):
         relaxed = return_to_shear(trial, limit, s, p, lame, shear)
@@ -96,7 +96,8 @@ def relax(trial, tension, limit, s, p, lame, shear):
     a, b, c = trial.major - relaxed.major, trial.middle - relaxed.middle, trial.minor - relaxed.minor
     mean = (a + b + c) * THIRD
     a, b, c = a - mean, b - mean, c - mean
-    return relaxed, sqrt(2.0 * THIRD * (a * a + b * b + c * c)) / (2.0 * shear)
+    opened = mean / (lame + 2.0 * THIRD * shear) if relaxed.major == relaxed.minor else 0.0
+    return relaxed, sqrt(2.0 * THIRD * (a * a + b * b + c * c)) / (2.0 * shear), max(0.0, opened)
 
 
 class MohrCoulomb(NamedTuple):
@@ -120,7 +121,7 @@ class MohrCoulomb(NamedTuple):
 
     def update_stress(self, stress, strain_increment, history):
         """Elastic predictor and exact return in principal stresses, two of which lie in the plane."""
-        trial = hooke(self.lame, self.shear, stress, strain_increment)
+        trial, _, opening = predict(self, stress, strain_increment, history.opening)
         mean, half = 0.5 * (trial.xx + trial.yy), 0.5 * (trial.xx - trial.yy)
         radius = sqrt(half * half + trial.xy * trial.xy)
         high, low = mean + radius, mean - radius
@@ -128,15 +129,17 @@ class MohrCoulomb(NamedTuple):
         cohesion, s, cosine, p = strength(self, history)
         limit = 2.0 * cohesion * cosine
         if is_within(principal, limit, s) and principal.major <= self.tension:
-            return trial, history
-        relaxed, growth = relax(principal, self.tension, limit, s, p, self.lame, self.shear)
+            return trial, FrictionalHistory(history.plastic_strain, opening)
+        relaxed, growth, opened = relax(
+            principal, self.tension, limit, s, 0.0 if opening > 0.0 else p, self.lame, self.shear
+        )
         high_after = relaxed.middle if trial.zz >= high else relaxed.major
         low_after = relaxed.middle if trial.zz <= low else relaxed.minor
         across = relaxed.major + relaxed.middle + relaxed.minor - high_after - low_after
         mean = 0.5 * (high_after + low_after)
         scale = 0.5 * (high_after - low_after) / max(radius, SMALLEST)
         updated = Tensor(mean + scale * half, mean - scale * half, across, scale * trial.xy)
-        return updated, PlasticHistory(history.plastic_strain + growth)
+        return updated, FrictionalHistory(history.plastic_strain + growth, opening + opened)
 
     @classmethod
     def build(cls, material, cell, count, cohesion):
