@@ -33,7 +33,8 @@ class DruckerPrager(NamedTuple):
 
     def update_stress(self, stress, strain_increment, history):
         """Elastic predictor and exact return to cone, cut-off, their corner or the apex."""
-        trial, mean, opening = predict(self, stress, strain_increment, history.opening)
+        trial, opening = predict(self, stress, strain_increment, history.opening)
+        mean = (trial.xx + trial.yy + trial.zz) * THIRD
         sxx, syy, szz = trial.xx - mean, trial.yy - mean, trial.zz - mean
         tau = sqrt(0.5 * (sxx * sxx + syy * syy + szz * szz) + trial.xy * trial.xy)
         cohesion, s, cosine, p = strength(self, history)
@@ -46,15 +47,14 @@ class DruckerPrager(NamedTuple):
             return trial, FrictionalHistory(history.plastic_strain, opening)
         bulk = self.lame + 2.0 * THIRD * self.shear
         g = max(0.0, beyond) / (self.shear + bulk * slope * flow)
-        mean, relaxed = mean - g * bulk * flow, tau - g * self.shear
         highest = min(self.tension, limit / slope if slope > 0.0 else inf)
-        if mean > highest:
-            opening += (mean - highest) / bulk
-            mean, relaxed = highest, min(tau, max(0.0, limit - slope * highest))
+        after, relaxed, opened = mean - g * bulk * flow, tau - g * self.shear, 0.0
+        if after > highest:
+            after, relaxed, opened = highest, min(tau, max(0.0, limit - slope * highest)), (mean - highest) / bulk
         scale = relaxed / max(tau, SMALLEST)
-        updated = Tensor(mean + scale * sxx, mean + scale * syy, mean + scale * szz, scale * trial.xy)
+        updated = Tensor(after + scale * sxx, after + scale * syy, after + scale * szz, scale * trial.xy)
         growth = (tau - relaxed) * sqrt(THIRD) / self.shear
-        return updated, FrictionalHistory(history.plastic_strain + growth, opening)
+        return updated, FrictionalHistory(history.plastic_strain + growth, opening + opened)
 
     @classmethod
     def build(cls, material, cell, count, cohesion):

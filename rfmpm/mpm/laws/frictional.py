@@ -3,9 +3,9 @@
 The strength of a step is that of the plastic strain at its start: it lags behind by what falls within one step, at most
 the growth of plastic strain over the strain at the residual, as a share of the whole fall. The lag does not add up.
 
-Soil pulled apart beyond its apex opens, and bears compression again only when it has closed: until then its mean stress
-does not fall below zero and shearing does not dilate it (after Dunatunga and Kamrin 2015, who tell by the density).
-Without this, soil that flew apart would be stiff on landing at whatever volume it then has.
+Soil pulled apart in the plane opens, and bears compression again only when it has closed: until then its mean stress in
+the plane does not fall below zero and shearing does not dilate it (after Dunatunga and Kamrin 2015, who tell by the
+density). Without this, soil that flew apart would be stiff on landing at whatever volume it then has.
 """
 
 from math import radians, sqrt
@@ -31,7 +31,7 @@ class FrictionalHistory(NamedTuple):
     """What plastic flow leaves behind."""
 
     plastic_strain: float  # equivalent, of the deviator: integral of sqrt(2/3 de_p : de_p) [-]
-    opening: float  # volumetric strain by which the soil is open [-]
+    opening: float  # strain of the area by which the soil is open [-]
 
 
 class Strength(NamedTuple):
@@ -79,16 +79,16 @@ def strength(law, history):
 
 @inlined
 def predict(law, stress, strain_increment, opening):
-    """Elastic predictor; an opening closes before the mean stress falls below zero.
+    """Elastic predictor; an opening closes before the mean stress in the plane falls below zero.
 
-    Returns (trial stress, its mean, opening left).
+    Returns (trial stress, opening left).
     """
     trial = hooke(law.lame, law.shear, stress, strain_increment)
-    mean, bulk = THIRD * (trial.xx + trial.yy + trial.zz), law.lame + 2.0 * THIRD * law.shear
-    closing = min(opening, max(0.0, -mean / bulk))
-    relief = bulk * closing
-    raised = Tensor(trial.xx + relief, trial.yy + relief, trial.zz + relief, trial.xy)
-    return raised, mean + relief, opening - closing
+    plane = law.lame + law.shear
+    closing = min(opening, max(0.0, -0.5 * (trial.xx + trial.yy) / plane))
+    relief = plane * closing
+    raised = Tensor(trial.xx + relief, trial.yy + relief, trial.zz + law.lame * closing, trial.xy)
+    return raised, opening - closing
 
 
 def build_frictional(law, material, cell, count, cohesion):

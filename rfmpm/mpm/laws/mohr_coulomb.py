@@ -84,7 +84,7 @@ def is_within(stress, limit, s):
 def relax(trial, tension, limit, s, p, lame, shear):
     """Return principal stresses to pyramid and cut-off.
 
-    Returns (them, growth of the plastic strain, volumetric strain of opening at the apex of either).
+    Returns (them, growth of the plastic strain, volumetric plastic strain).
     """
     relaxed = trial
     if not is_within(trial, limit, s):
@@ -96,8 +96,8 @@ def relax(trial, tension, limit, s, p, lame, shear):
     a, b, c = trial.major - relaxed.major, trial.middle - relaxed.middle, trial.minor - relaxed.minor
     mean = (a + b + c) * THIRD
     a, b, c = a - mean, b - mean, c - mean
-    opened = mean / (lame + 2.0 * THIRD * shear) if relaxed.major == relaxed.minor else 0.0
-    return relaxed, sqrt(2.0 * THIRD * (a * a + b * b + c * c)) / (2.0 * shear), max(0.0, opened)
+    growth = sqrt(2.0 * THIRD * (a * a + b * b + c * c)) / (2.0 * shear)
+    return relaxed, growth, mean / (lame + 2.0 * THIRD * shear)
 
 
 class MohrCoulomb(NamedTuple):
@@ -121,7 +121,7 @@ class MohrCoulomb(NamedTuple):
 
     def update_stress(self, stress, strain_increment, history):
         """Elastic predictor and exact return in principal stresses, two of which lie in the plane."""
-        trial, _, opening = predict(self, stress, strain_increment, history.opening)
+        trial, opening = predict(self, stress, strain_increment, history.opening)
         mean, half = 0.5 * (trial.xx + trial.yy), 0.5 * (trial.xx - trial.yy)
         radius = sqrt(half * half + trial.xy * trial.xy)
         high, low = mean + radius, mean - radius
@@ -130,16 +130,18 @@ class MohrCoulomb(NamedTuple):
         limit = 2.0 * cohesion * cosine
         if is_within(principal, limit, s) and principal.major <= self.tension:
             return trial, FrictionalHistory(history.plastic_strain, opening)
-        relaxed, growth, opened = relax(
+        relaxed, growth, swelling = relax(
             principal, self.tension, limit, s, 0.0 if opening > 0.0 else p, self.lame, self.shear
         )
         high_after = relaxed.middle if trial.zz >= high else relaxed.major
         low_after = relaxed.middle if trial.zz <= low else relaxed.minor
+        if high_after == low_after and (high_after == self.tension or relaxed.major == relaxed.minor):
+            opening += max(0.0, swelling)
         across = relaxed.major + relaxed.middle + relaxed.minor - high_after - low_after
         mean = 0.5 * (high_after + low_after)
         scale = 0.5 * (high_after - low_after) / max(radius, SMALLEST)
         updated = Tensor(mean + scale * half, mean - scale * half, across, scale * trial.xy)
-        return updated, FrictionalHistory(history.plastic_strain + growth, opening + opened)
+        return updated, FrictionalHistory(history.plastic_strain + growth, opening)
 
     @classmethod
     def build(cls, material, cell, count, cohesion):
