@@ -135,7 +135,10 @@ class VonMisesMaterial(ElasticMaterial):
 
 
 class FrictionalMaterial(ElasticMaterial):
-    """[[material]] with a drained strength that softens linearly with plastic strain to a residual"""
+    """[[material]] with a drained strength that softens linearly with plastic strain to a residual
+
+    One strain ends the fall of cohesion and of both angles; a modulus in kPa could not speak for angles.
+    """
 
     cohesion_kpa: NotNegative = Field(description="Peak cohesion [kPa], or the mean of its random field")
     residual_cohesion_kpa: NotNegative | None = Field(
