@@ -7,12 +7,16 @@ its mass comes closer than about 0.7 mm.
 
 The best published code known to us has a root mean square of 1.7 mm. With the soil's data as given, none fitted:
 
-    cell             10 mm   5 mm   2.5 mm
-    Mohr-Coulomb      1.4    3.0    3.7 mm
+    cell              10 mm   5 mm   2.5 mm
+    Mohr-Coulomb       1.4    3.0    3.7 mm
+    Drucker-Prager     1.4    3.0    3.8 mm
 
 It grows as the cells shrink: the share of numerical dissipation falls from 14 to 5 % of gravity's work and the crest
 sinks, by 2 to 6 mm, while the front comes to where it was measured. So the good match on coarse cells is in part that
-of two errors; neither the time step, nor the rate of dissipation, nor the number of points per cell changes it.
+of two errors. At 5 mm a step of 0.2 of the critical one (2.6), dissipation in 0.1 s (2.7), nine points per cell (3.1), a
+stiffness five times higher (2.8) and a rough wall (3.0 mm) change little. Friction does: were 19.8 degrees the angle of
+a direct shear test, tan(19.8) = sin(phi) without dilation, phi would be 21.1 and the figures 1.6 mm at 5 and 2.3 mm at
+2.5 mm.
 """
 
 from functools import cache
