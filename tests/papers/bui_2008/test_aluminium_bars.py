@@ -13,10 +13,10 @@ The best published code known to us has a root mean square of 1.7 mm. With the s
 
 It grows as the cells shrink: the share of numerical dissipation falls from 14 to 5 % of gravity's work and the crest
 sinks, by 2 to 6 mm, while the front comes to where it was measured. So the good match on coarse cells is in part that
-of two errors. At 5 mm a step of 0.2 of the critical one (2.6), dissipation in 0.1 s (2.7), nine points per cell (3.1), a
-stiffness five times higher (2.8) and a rough wall (3.0 mm) change little. Friction does: were 19.8 degrees the angle of
-a direct shear test, tan(19.8) = sin(phi) without dilation, phi would be 21.1 and the figures 1.6 mm at 5 and 2.3 mm at
-2.5 mm.
+of two errors. At 5 mm a step of 0.2 of the critical one (2.6), dissipation in 0.1 s (2.7), nine points per cell (3.1),
+a stiffness five times higher (2.8) and a rough wall (3.0 mm) change little. Friction does: were 19.8 degrees the angle
+of a direct shear test, tan(19.8) = sin(phi) without dilation, phi would be 21.1 and the figures 1.6 mm at 5 and 2.3 mm
+at 2.5 mm.
 """
 
 from functools import cache
