@@ -86,6 +86,8 @@ def _tiny_study(shape: str, law: str, base: str, sides: str) -> Study:
     }
     if law != "elastic":
         material["cohesion_kpa"] = 20.0
+    if law in ("mohr_coulomb", "drucker_prager"):
+        material["friction_angle_deg"] = 30.0
     return Study(
         study={"name": "warm-up", "seed": 0},
         geometry={"kind": "block", "width_m": 2.0, "height_m": 2.0, "foreland_m": 2.0},

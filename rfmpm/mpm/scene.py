@@ -51,7 +51,8 @@ def build(study) -> Scene:
         study: the study.
 
     Returns:
-        The scene, its points under elastic gravity stresses.
+        The scene, its points under elastic gravity stresses. Where these lie beyond yield, the law takes them back to
+        it when the run fills its grid, before the first step: what they exceed it by then sets the body in motion.
     """
     cell, material = study.discretisation.cell_m, study.material[0]
     shape = body(study)

@@ -3,12 +3,11 @@
 from collections import Counter
 from collections.abc import Callable, Iterator
 from math import floor, isclose, radians, sqrt, tan
-from typing import Any
-
-from pydantic import BaseModel
 
 from rfmpm.study.errors import Problem
-from rfmpm.study.schema import KeyPath, field_at, one_of, value_at
+from rfmpm.study.known import Known, Unknown, problem
+from rfmpm.study.material_checks import MATERIAL_CHECKS
+from rfmpm.study.schema import one_of
 
 LARGEST_POINT_COUNT = 5_000_000
 LARGEST_CELL_COUNT = 20_000_000
@@ -17,43 +16,6 @@ LARGEST_CHOLESKY_COUNT = 20_000
 LARGEST_CELL_OVER_LENGTH = 1.0  # of a softening length; the transfer itself averages over 0.7 cells
 HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION = 0.99  # towards 1 a truncated normal becomes exponential
 SMALLEST_CELLS = {("slope", "height_m"): 4, ("slope", "crest_m"): 2, ("block", "width_m"): 2, ("block", "height_m"): 1}
-
-
-class Unknown(LookupError):
-    """A value that a check needs is missing or wrong."""
-
-
-class Known:
-    """The values of a study that are right in themselves, defaults filled in, looked up by dotted path.
-
-    Args:
-        model: the model of the whole study.
-        data: the study as nested dicts and lists.
-        doubtful: paths of the values that are wrong.
-    """
-
-    def __init__(self, model: type[BaseModel], data: dict, doubtful: set[KeyPath]):
-        self.model, self.data, self.doubtful = model, data, doubtful
-
-    def __getitem__(self, dotted: str) -> Any:
-        path = path_of(dotted)
-        if any(path[:length] in self.doubtful for length in range(1, len(path) + 1)):
-            raise Unknown(dotted)
-        value = value_at(self.data, path, default=...)
-        if value is not ...:
-            return value
-        try:
-            _, info = field_at(self.model, self.data, path)
-        except (KeyError, TypeError):
-            raise Unknown(dotted) from None
-        if info is None or info.is_required():
-            raise Unknown(dotted)
-        return info.get_default(call_default_factory=True)
-
-
-def path_of(dotted: str) -> KeyPath:
-    """'material.0.name' as ('material', 0, 'name')."""
-    return tuple(int(key) if key.isdecimal() else key for key in dotted.split("."))
 
 
 def joint_problems(known: Known) -> list[Problem]:
@@ -69,10 +31,6 @@ def joint_problems(known: Known) -> list[Problem]:
     return found
 
 
-def _problem(known: Known, dotted: str, text: str) -> Problem:
-    return Problem(path_of(dotted), text, known[dotted])
-
-
 def _lengths_fit_the_cells(known: Known, name: str) -> Iterator[Problem]:
     kind, cell, length = known["geometry.kind"], known["discretisation.cell_m"], known[f"geometry.{name}"]
     least, cells = SMALLEST_CELLS[kind, name], length / cell
@@ -83,7 +41,7 @@ def _lengths_fit_the_cells(known: Known, name: str) -> Iterator[Problem]:
         f"must be a whole number of cells of {cell:.10g} m, at least {least}; "
         f"nearest: {' or '.join(f'{value:.10g}' for value in nearest)}"
     )
-    yield _problem(known, f"geometry.{name}", text)
+    yield problem(known, f"geometry.{name}", text)
 
 
 def _height_fits(known: Known) -> Iterator[Problem]:
@@ -109,7 +67,7 @@ def _points_are_affordable(known: Known) -> Iterator[Problem]:
     count = _body(known)[0] / cell**2 * per_cell
     fields = known["random_field"]
     if count > LARGEST_POINT_COUNT:
-        yield _problem(known, "discretisation.cell_m", _too_many("material points", count, LARGEST_POINT_COUNT, cell))
+        yield problem(known, "discretisation.cell_m", _too_many("material points", count, LARGEST_POINT_COUNT, cell))
     elif "cohesion" in fields and count > LARGEST_CHOLESKY_COUNT:
         method = "random_field.cohesion.method"
         if known[method] == "cholesky":
@@ -118,7 +76,7 @@ def _points_are_affordable(known: Known) -> Iterator[Problem]:
                 f"{LARGEST_CHOLESKY_COUNT:,} points: take discretisation.cell_m of at least "
                 f"{cell * sqrt(count / LARGEST_CHOLESKY_COUNT):.3g}, or fewer discretisation.points_per_cell"
             )
-            yield _problem(known, method, text)
+            yield problem(known, method, text)
 
 
 def _cells_are_affordable(known: Known) -> Iterator[Problem]:
@@ -126,7 +84,7 @@ def _cells_are_affordable(known: Known) -> Iterator[Problem]:
     _, length, height = _body(known)
     count = (length + known["geometry.foreland_m"]) * height / cell**2
     if count > LARGEST_CELL_COUNT:
-        yield _problem(known, "discretisation.cell_m", _too_many("cells", count, LARGEST_CELL_COUNT, cell))
+        yield problem(known, "discretisation.cell_m", _too_many("cells", count, LARGEST_CELL_COUNT, cell))
 
 
 def _too_many(what: str, count: float, most: int, cell: float) -> str:
@@ -144,7 +102,7 @@ def _surface_bins_are_affordable(known: Known) -> Iterator[Problem]:
     if width and length / width > LARGEST_BIN_COUNT:
         least = length / LARGEST_BIN_COUNT
         text = f"gives {_rounded(length / width)} bins, at most {LARGEST_BIN_COUNT:,}: take {least:.3g} or more"
-        yield _problem(known, "output.surface_bin_m", text)
+        yield problem(known, "output.surface_bin_m", text)
 
 
 def _residual_is_below_the_peak(known: Known) -> Iterator[Problem]:
@@ -153,7 +111,7 @@ def _residual_is_below_the_peak(known: Known) -> Iterator[Problem]:
             residual, peak = known[f"material.{index}.residual_cohesion_kpa"], known[f"material.{index}.cohesion_kpa"]
             if residual is not None and residual > peak:
                 text = f"must be at most the peak, cohesion_kpa = {peak:.10g}"
-                yield _problem(known, f"material.{index}.residual_cohesion_kpa", text)
+                yield problem(known, f"material.{index}.residual_cohesion_kpa", text)
 
 
 def _softening_does_not_snap_back(known: Known) -> Iterator[Problem]:
@@ -173,7 +131,7 @@ def _softening_does_not_snap_back(known: Known) -> Iterator[Problem]:
                 f"must be less than {shear_modulus / scale:.6g} with these cells and this stiffness, "
                 "else the stress falls faster than the material can unload"
             )
-            yield _problem(known, f"{material}.softening_modulus_kpa", text)
+            yield problem(known, f"{material}.softening_modulus_kpa", text)
 
 
 def _softening_has_one_length(known: Known) -> Iterator[Problem]:
@@ -196,7 +154,7 @@ def _softening_has_one_length(known: Known) -> Iterator[Problem]:
 def _there_is_one_material(known: Known) -> Iterator[Problem]:
     count = len(known["material"])
     if count != 1:
-        yield _problem(
+        yield problem(
             known, "material", f"must be exactly one table, written [[material]]; there are {count or 'none'}"
         )
 
@@ -206,7 +164,7 @@ def _names_are_unique(known: Known) -> Iterator[Problem]:
     for name, count in Counter(names).items():
         if count > 1:
             last = len(names) - 1 - names[::-1].index(name)
-            yield _problem(known, f"material.{last}.name", f"is the name of {count} materials; names must differ")
+            yield problem(known, f"material.{last}.name", f"is the name of {count} materials; names must differ")
 
 
 def _field_has_its_material(known: Known) -> Iterator[Problem]:
@@ -218,10 +176,10 @@ def _field_has_its_material(known: Known) -> Iterator[Problem]:
             return
         strong = [name for name, law in laws.items() if law != "elastic"]
         if asked not in laws:
-            yield _problem(known, key, f"names no material; must be {one_of(list(laws), asked)}")
+            yield problem(known, key, f"names no material; must be {one_of(list(laws), asked)}")
         elif asked not in strong:
             text = f'is a material with law = "{laws[asked]}", which has no {variable}'
-            yield _problem(known, key, text)
+            yield problem(known, key, text)
 
 
 def _truncated_normal_can_spread_so(known: Known) -> Iterator[Problem]:
@@ -229,7 +187,7 @@ def _truncated_normal_can_spread_so(known: Known) -> Iterator[Problem]:
         key = f"random_field.{variable}.coefficient_of_variation"
         highest = HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION
         if known[f"random_field.{variable}.distribution"] == "normal_truncated" and known[key] >= highest:
-            yield _problem(known, key, f"must be less than {highest:g} for normal_truncated; lognormal allows more")
+            yield problem(known, key, f"must be less than {highest:g} for normal_truncated; lognormal allows more")
 
 
 CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
@@ -245,4 +203,5 @@ CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _names_are_unique,
     _field_has_its_material,
     _truncated_normal_can_spread_so,
+    *MATERIAL_CHECKS,
 ]

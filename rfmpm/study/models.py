@@ -10,6 +10,7 @@ Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0)]
 NotNegative = Annotated[Number, Field(ge=0)]
 Length = Annotated[Number, Field(gt=0, le=1e6)]
+Inclination = Annotated[Number, Field(ge=0, le=80)]
 Text = Annotated[str, Strict(), Field(pattern=r"\S")]
 LARGEST_SEED = 2**63 - 1  # what a NetCDF attribute holds
 
@@ -142,7 +143,60 @@ class VonMisesMaterial(ElasticMaterial):
             object.__setattr__(self, "residual_cohesion_kpa", self.cohesion_kpa)
 
 
-Material = Annotated[ElasticMaterial | VonMisesMaterial, Field(discriminator="law")]
+class FrictionalMaterial(ElasticMaterial):
+    """[[material]] with a drained strength that softens linearly with plastic strain to a residual
+
+    One strain ends the fall of cohesion and of both angles; a modulus in kPa could not speak for angles.
+    """
+
+    cohesion_kpa: NotNegative = Field(description="Peak cohesion [kPa], or the mean of its random field")
+    residual_cohesion_kpa: NotNegative | None = Field(
+        None, description="Residual cohesion [kPa], at most the peak; scales with a random peak. Default: the peak"
+    )
+    friction_angle_deg: Inclination = Field(description="Peak angle of friction [degrees]")
+    residual_friction_angle_deg: Inclination | None = Field(
+        None, description="Residual angle of friction [degrees], at most the peak. Default: the peak"
+    )
+    dilation_angle_deg: Inclination = Field(
+        0.0, description="Peak angle of dilation [degrees], at most that of friction"
+    )
+    residual_dilation_angle_deg: Inclination | None = Field(
+        None, description="Residual angle of dilation [degrees], at most the peak. Default: the peak"
+    )
+    tension_cutoff_kpa: NotNegative | None = Field(
+        None,
+        description="Largest tension [kPa]: principal stress for mohr_coulomb, mean stress for drucker_prager; "
+        "left out: what cohesion and friction leave",
+    )
+    residual_plastic_strain: Positive | None = Field(
+        None, description="Plastic shear strain invariant at which cohesion and angles reach their residuals [1]"
+    )
+    softening_reference_cell_m: Length | None = Field(
+        None, description="Cell size that strain refers to [m]; left out: the strain is not scaled"
+    )
+
+    def model_post_init(self, context: object) -> None:
+        """Let residuals that are not given equal the peaks, without counting them among the given keys."""
+        for peak in ("cohesion_kpa", "friction_angle_deg", "dilation_angle_deg"):
+            if getattr(self, f"residual_{peak}") is None:
+                object.__setattr__(self, f"residual_{peak}", getattr(self, peak))
+
+
+class MohrCoulombMaterial(FrictionalMaterial):
+    """[[material]] with a drained strength: Mohr-Coulomb"""
+
+    law: Literal["mohr_coulomb"]
+
+
+class DruckerPragerMaterial(FrictionalMaterial):
+    """[[material]] with a drained strength: Drucker-Prager, which equals Mohr-Coulomb in plane strain flow"""
+
+    law: Literal["drucker_prager"]
+
+
+Material = Annotated[
+    ElasticMaterial | VonMisesMaterial | MohrCoulombMaterial | DruckerPragerMaterial, Field(discriminator="law")
+]
 
 
 class RandomField(Table):

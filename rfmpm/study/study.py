@@ -11,9 +11,10 @@ from typing import Annotated, Any, Literal
 import tomli_w
 from pydantic import BaseModel, Field
 
-from rfmpm.study.checks import Known, joint_problems, path_of
+from rfmpm.study.checks import joint_problems
 from rfmpm.study.diagnosis import Diagnosis
 from rfmpm.study.errors import Problem, StudyError
+from rfmpm.study.known import Known, path_of
 from rfmpm.study.models import (
     Boundary,
     Campaign,

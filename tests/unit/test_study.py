@@ -27,6 +27,7 @@ JARGON = (
     "pydantic",
     "extra",
     "von_mises.",
+    "mohr_coulomb.",
     "slope.",
 )
 
@@ -188,7 +189,7 @@ REFUSED = {
     "boundary.base": ["fixed", {"kind": "sticky"}, {"kind": "friction"}, {"kind": "roller", "coefficient": 0.3}],
     "boundary.base.coefficient": [-0.1, INF, NAN, "0.3"],
     "material.0.name": ["", 1],
-    "material.0.law": ["mohr_coulomb", None],
+    "material.0.law": ["cam_clay", None],
     "material.0.unit_weight_kn_m3": [0, -20, INF, NAN],
     "material.0.youngs_modulus_kpa": [0, -1000.0, INF, NAN],
     "material.0.poissons_ratio": [-0.1, 0.5, 0.491, INF, NAN],
@@ -286,6 +287,91 @@ def test_ends_of_the_ranges_and_whole_numbers_for_lengths_are_accepted(study, pa
 )
 def test_wording(study, path, value, sentence):
     assert problems_of(study, {path: value}) == [sentence]
+
+
+# --- materials with friction
+
+
+@pytest.fixture(params=["mohr_coulomb", "drucker_prager"])
+def drained(study, request):
+    soil = {**_elastic(study), "law": request.param, "cohesion_kpa": 5.0, "friction_angle_deg": 30.0}
+    soil |= {"dilation_angle_deg": 8.0, "tension_cutoff_kpa": 1.0, "softening_reference_cell_m": 0.25}
+    soil |= {"residual_cohesion_kpa": 1.0, "residual_friction_angle_deg": 20.0, "residual_dilation_angle_deg": 0.0}
+    return study.with_changes({"material.0": {**soil, "residual_plastic_strain": 0.5}})
+
+
+REFUSED_DRAINED = {
+    "cohesion_kpa": [-1.0, INF, NAN, "5", None],
+    "residual_cohesion_kpa": [-1.0, 5.1, INF, NAN],
+    "friction_angle_deg": [-1.0, 81.0, INF, NAN, None],
+    "residual_friction_angle_deg": [-1.0, 31.0, NAN],
+    "dilation_angle_deg": [-1.0, 31.0, NAN, "8"],
+    "residual_dilation_angle_deg": [-1.0, 8.1, NAN],
+    "tension_cutoff_kpa": [-1.0, INF, NAN],
+    "residual_plastic_strain": [0, -0.1, INF, NAN, None],
+    "softening_reference_cell_m": [0, -0.25, INF, NAN],
+}
+
+
+@pytest.mark.parametrize(
+    ("key", "value"), [(key, value) for key, values in REFUSED_DRAINED.items() for value in values]
+)
+def test_value_of_a_drained_soil_out_of_range_is_refused_once_by_its_path(drained, key, value):
+    problems = problems_of(drained, {f"material.0.{key}": value})
+    assert len(problems) == 1
+    assert problems[0].startswith(f"material.0.{key}")
+    assert not [word for word in JARGON if word in problems[0]]
+
+
+def test_every_key_of_a_drained_soil_has_a_range_test(drained):
+    shared = {"name", "law", "unit_weight_kn_m3", "youngs_modulus_kpa", "poissons_ratio"}
+    assert type(drained.material[0]).model_fields.keys() == shared | REFUSED_DRAINED.keys()
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"residual_plastic_strain": None}, "residual_cohesion_kpa is less than cohesion_kpa"),
+        ({"dilation_angle_deg": 30.5}, "dilation_angle_deg = 30.5: must be at most friction_angle_deg = 30"),
+        ({"residual_friction_angle_deg": 5.0, "residual_dilation_angle_deg": 6.0}, "residual angle of friction, 5"),
+        ({"residual_friction_angle_deg": 5.0, "residual_dilation_angle_deg": None},
+         "dilation_angle_deg = 8.0: must be at most the residual angle of friction, 5"),
+        ({"residual_plastic_strain": 0.01}, "else the stress falls faster than the material can unload"),
+        ({"cohesion_kpa": 0.0, "residual_cohesion_kpa": 0.0}, "must be greater than 0, the mean of its random field"),
+    ],
+)  # fmt: skip
+def test_wording_for_a_drained_soil(drained, changes, sentence):
+    (problem,) = problems_of(drained, {f"material.0.{key}": value for key, value in changes.items()})
+    assert sentence in problem
+
+
+def test_drained_soil_may_lack_cohesion_or_friction_but_not_both(drained):
+    loose = {"random_field": {}, "material.0.cohesion_kpa": 0.0, "material.0.residual_cohesion_kpa": 0.0}
+    assert drained.with_changes(loose).material[0].cohesion_kpa == 0.0
+    smooth = {f"material.0.{key}": 0.0 for key in REFUSED_DRAINED if key.endswith("angle_deg")}
+    assert drained.with_changes(smooth).material[0].friction_angle_deg == 0.0
+    (problem,) = problems_of(drained, {**loose, **smooth})
+    assert problem.startswith("material.0.cohesion_kpa = 0.0: must be greater than 0 where friction_angle_deg = 0")
+
+
+def test_residuals_of_a_drained_soil_default_to_the_peaks(study):
+    bare = {**_elastic(study), "law": "mohr_coulomb", "cohesion_kpa": 5.0, "friction_angle_deg": 30.0}
+    soil = study.with_changes({"material.0": bare}).material[0]
+    residuals = soil.residual_cohesion_kpa, soil.residual_friction_angle_deg, soil.residual_dilation_angle_deg
+    assert residuals == (5.0, 30.0, 0.0)
+    assert soil.residual_plastic_strain is None
+
+
+@pytest.mark.parametrize(("reference", "scale"), [(None, 1.0), (0.125, 2.0)])
+def test_drained_softening_that_snaps_back_is_refused(drained, reference, scale):
+    # Under 5 m of 20 kN/m3; per unit plastic strain the shear stress unloads by sqrt(3) G.
+    angles = [math.radians(angle) for angle in (30.0, 20.0)]
+    loss = 5.0 * math.cos(angles[0]) - 1.0 * math.cos(angles[1]) + 100.0 * (math.sin(angles[0]) - math.sin(angles[1]))
+    least = scale * loss / (math.sqrt(3.0) * 1000.0 / (2.0 * 1.33))
+    softening = {"material.0.softening_reference_cell_m": reference}
+    drained.with_changes({**softening, "material.0.residual_plastic_strain": least * 1.001})
+    (problem,) = problems_of(drained, {**softening, "material.0.residual_plastic_strain": least * 0.999})
+    assert f"must be greater than {least:.6g}" in problem
 
 
 # --- several keys together

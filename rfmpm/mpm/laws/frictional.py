@@ -1,0 +1,121 @@
+"""What the frictional laws share: strength that falls linearly with plastic strain, and the gap of soil that opened.
+
+The strength of a step is that of the plastic strain at its start: it lags behind by what falls within one step, at most
+the growth of plastic strain over the strain at the residual, as a share of the whole fall. The lag does not add up.
+
+Soil pulled apart in the plane opens, and bears compression again only when it has closed: until then its mean stress in
+the plane does not fall below zero and shearing does not dilate it (after Dunatunga and Kamrin 2015, who tell by the
+density). Without this, soil that flew apart would be stiff on landing at whatever volume it then has.
+"""
+
+from math import radians, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from rfmpm.kernel_tools import Tensor, inlined
+from rfmpm.mpm.laws.elastic import hooke, lame_constants
+
+THIRD = 1.0 / 3.0
+SINE_SERIES = tuple(-1.0 / (k * (k + 1.0)) for k in range(2, 18, 2))  # from one term to the next
+
+
+class Angle(NamedTuple):
+    """An angle of friction or dilation on its way from peak to residual, the same for all points."""
+
+    peak: float  # [rad]
+    residual: float  # [rad]
+
+
+class FrictionalHistory(NamedTuple):
+    """What plastic flow leaves behind."""
+
+    plastic_strain: float  # equivalent, of the deviator: integral of sqrt(2/3 de_p : de_p) [-]
+    opening: float  # strain of the area by which the soil is open [-]
+
+
+class Strength(NamedTuple):
+    """Cohesion and angles of one point at one moment."""
+
+    cohesion: float  # [Pa]
+    sin_friction: float
+    cos_friction: float
+    sin_dilation: float
+
+
+@inlined
+def softening_strain(history):
+    """Plastic strain that the strength follows; the one place where a law reads it from the history."""
+    return history.plastic_strain
+
+
+@inlined
+def sine(angle):
+    """Sine of an angle of at most 80 degrees to 1e-14, by its series.
+
+    A call would keep the compiler from updating several points at once.
+    """
+    square, term, total = angle * angle, angle, angle
+    for factor in SINE_SERIES:
+        term *= factor * square
+        total += term
+    return total
+
+
+@inlined
+def fallen(falling, share):
+    """Value after that share of the way from `peak` to `residual`."""
+    return falling.peak + share * (falling.residual - falling.peak)
+
+
+@inlined
+def strength(law, history):
+    """Strength of a law with `peak`, `residual`, `friction`, `dilation` and `softening`, after that history."""
+    share = min(1.0, softening_strain(history) * law.softening)
+    sin_friction = sine(fallen(law.friction, share))
+    cos_friction = sqrt(1.0 - sin_friction * sin_friction)
+    return Strength(fallen(law, share), sin_friction, cos_friction, sine(fallen(law.dilation, share)))
+
+
+@inlined
+def predict(law, stress, strain_increment, opening):
+    """Elastic predictor; an opening closes before the mean stress in the plane falls below zero.
+
+    Returns (trial stress, opening left).
+    """
+    trial = hooke(law.lame, law.shear, stress, strain_increment)
+    plane = law.lame + law.shear
+    closing = min(opening, max(0.0, -0.5 * (trial.xx + trial.yy) / plane))
+    relief = plane * closing
+    raised = Tensor(trial.xx + relief, trial.yy + relief, trial.zz + law.lame * closing, trial.xy)
+    return raised, opening - closing
+
+
+def build_frictional(law, material, cell, count, cohesion):
+    """Make a law of frictional soil and its history; arguments as for `VonMises.build`.
+
+    The plastic strain at which the residual is reached is divided by cell over reference cell, where the material names
+    one. The residual cohesion is proportional to the peak, point by point.
+
+    Returns:
+        The law, of class `law`, and a fresh history, with arrays of shape (count,).
+    """
+    lame, shear = lame_constants(material.youngs_modulus_kpa * 1e3, material.poissons_ratio)
+    peak = np.full(count, material.cohesion_kpa * 1e3) if cohesion is None else np.asarray(cohesion)
+    ratio = material.residual_cohesion_kpa / material.cohesion_kpa if material.cohesion_kpa > 0.0 else 1.0
+    softening = 0.0
+    if material.residual_plastic_strain is not None:
+        softening = 1.0 / material.residual_plastic_strain
+        if material.softening_reference_cell_m is not None:
+            softening *= cell / material.softening_reference_cell_m
+    made = law(
+        lame,
+        shear,
+        peak,
+        peak * ratio,
+        Angle(radians(material.friction_angle_deg), radians(material.residual_friction_angle_deg)),
+        Angle(radians(material.dilation_angle_deg), radians(material.residual_dilation_angle_deg)),
+        np.inf if material.tension_cutoff_kpa is None else material.tension_cutoff_kpa * 1e3,
+        softening,
+    )
+    return made, FrictionalHistory(np.zeros(count), np.zeros(count))
