@@ -142,13 +142,13 @@ def _softening_has_one_length(known: Known) -> Iterator[Problem]:
             continue
         if known[f"{material}.softening_reference_cell_m"]:
             text = "cannot be given together with softening_length_m: the modulus is then the soil's own, not scaled"
-            yield _problem(known, f"{material}.softening_reference_cell_m", text)
+            yield problem(known, f"{material}.softening_reference_cell_m", text)
         if known["discretisation.cell_m"] > LARGEST_CELL_OVER_LENGTH * length * (1 + 1e-9):
             text = (
                 f"must be at least {known['discretisation.cell_m'] / LARGEST_CELL_OVER_LENGTH:.4g} m with these cells, "
                 "or take smaller cells: an average over less than a cell depends on the cell"
             )
-            yield _problem(known, f"{material}.softening_length_m", text)
+            yield problem(known, f"{material}.softening_length_m", text)
 
 
 def _there_is_one_material(known: Known) -> Iterator[Problem]:

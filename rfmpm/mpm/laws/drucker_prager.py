@@ -31,7 +31,7 @@ class DruckerPrager(NamedTuple):
     tension: float  # largest mean stress; infinite for none [Pa]
     softening: float  # one over the plastic strain at which the residual is reached; 0 for no softening [-]
 
-    def update_stress(self, stress, strain_increment, history):
+    def update_stress(self, stress, strain_increment, history, dt):
         """Elastic predictor and exact return to cone, cut-off, their corner or the apex."""
         trial, opening = predict(self, stress, strain_increment, history.opening)
         mean = (trial.xx + trial.yy + trial.zz) * THIRD

@@ -119,7 +119,7 @@ class MohrCoulomb(NamedTuple):
     tension: float  # largest principal stress; infinite for none [Pa]
     softening: float  # one over the plastic strain at which the residual is reached; 0 for no softening [-]
 
-    def update_stress(self, stress, strain_increment, history):
+    def update_stress(self, stress, strain_increment, history, dt):
         """Elastic predictor and exact return in principal stresses, two of which lie in the plane."""
         trial, opening = predict(self, stress, strain_increment, history.opening)
         mean, half = 0.5 * (trial.xx + trial.yy), 0.5 * (trial.xx - trial.yy)

@@ -45,7 +45,7 @@ def isotropic(stress):
 @kernel
 def _strain(law, stress, history, increment, steps):
     for _ in range(steps):
-        stress, history = update_stress(law, stress, increment, history)
+        stress, history = update_stress(law, stress, increment, history, 1e-3)
     return stress, history
 
 

@@ -34,8 +34,9 @@ def slope(law, **changes):
 
 def test_initial_stress_beyond_yield_goes_back_to_it_before_the_first_step():
     scene = scenes.build(slope("mohr_coulomb"))
-    points, law, history, grid = scenes.release(scene, None)
-    now = SOLVERS["explicit"](start(), 0.0, points, law, history, scene.axes, grid, scene.walls, scene.controls)
+    own = scenes.release(scene, None)
+    points, history = own.points, own.history
+    now = SOLVERS["explicit"](start(), 0.0, *scenes.arguments(scene, own))
     assert now.step_count == 0
     yielding = history.plastic_strain > 0.0
     assert 0 < yielding.sum() < yielding.size
@@ -56,7 +57,7 @@ def test_random_cohesion_is_the_peak_of_each_point_and_its_residual_follows(law)
     study = slope(law)
     cohesion = rfmpm.realise_fields(study, index=3)["cohesion"]
     assert cohesion.std() > 500.0
-    _, soil, _, _ = scenes.release(scenes.build(study), cohesion)
+    soil = scenes.release(scenes.build(study), cohesion).law
     np.testing.assert_array_equal(soil.peak, cohesion)
     np.testing.assert_allclose(soil.residual, 0.25 * cohesion, rtol=1e-12)
 
