@@ -5,6 +5,12 @@ quadratic B-spline of one cell and mirrored at the wall. The measured curve, `su
 figure to about 1 mm; the area below it is 203 cm2, that of the column 200 cm2, so that no computed surface that keeps
 its mass comes closer than about 0.7 mm.
 
+The measure of the surface matters as much as the cells. It was chosen after others had been looked at, because it keeps
+the mass and has least noise from single points. Mohr-Coulomb at 10, 5, 2.5 mm, root mean square: this 1.4, 3.0, 3.7;
+the same with the points' present volumes, gaps included, 1.7, 3.4, 3.8; volume in a column one cell wide, unsmoothed,
+2.3 and 4.2; top of the highest point in that column 3.3 and 3.9 mm (these two at 10 and 5 mm). Which one stands behind
+the peer's figure is not known, so that "closer than the best peer" holds for this measure and 10 mm cells alone.
+
 The best published code known to us has a root mean square of 1.7 mm. With the soil's data as given, none fitted:
 
     cell              10 mm   5 mm   2.5 mm
@@ -72,7 +78,7 @@ def test_surface_of_the_column_before_it_collapses_is_its_height():
 
 
 @pytest.mark.parametrize("law", ["mohr_coulomb", "drucker_prager"])
-def test_ten_cells_high_is_closer_than_the_best_peer(law):
+def test_ten_cells_high_is_below_the_figure_of_the_best_peer(law):
     assert root_mean_square(law, 0.01) < BEST_PEER
 
 
