@@ -90,9 +90,7 @@ def poissons_ratio() -> Sweep:
         "softening, 20 to 4": {},
     }
     ratios = _each("material.0.poissons_ratio", (0.0, 0.1, 0.2, 0.3, 0.4, 0.45, 0.48, 0.49, 0.495, 0.5))
-    cases = [
-        Case(*place, refusal="poissons_ratio" if float(place[1]) > 0.49 else "") for place in _table(rows, ratios)
-    ]
+    cases = [Case(*place, refusal="poissons_ratio" if float(place[1]) > 0.49 else "") for place in _table(rows, ratios)]
     return Sweep("poissons_ratio", "Poisson's ratio", "soil", "Poisson's ratio", cases)
 
 
@@ -199,9 +197,7 @@ def separation() -> Sweep:
         "c = 0.1": _strength(0.1, 0.1, 0.0),
     }
     rows = {
-        f"{name}, {soil}": shape | changes
-        for name, shape in _all_shapes().items()
-        for soil, changes in soils.items()
+        f"{name}, {soil}": shape | changes for name, shape in _all_shapes().items() for soil, changes in soils.items()
     }
     base = {"geometry": block(2.0, 2.0, 8.0), "time.end_s": 10.0}
     cases = [
