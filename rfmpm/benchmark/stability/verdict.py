@@ -18,7 +18,7 @@ from rfmpm.variables import FAILED
 DONE, OPEN, STOPPED, REFUSED, FAIL = KINDS = ("done", "open", "stopped", "refused", "FAIL")
 CLOSED = 0.005  # energy not accounted for, as a share, up to which a balance counts as closed
 TOO_FAR_OPEN = 0.05
-SMALLER_STEP = 0.25  # of the step that failed: with it the advice "a smaller step" is put to the test
+SMALLER_STEP, LONGER_FORELAND = 0.25, 3.0  # factors with which the advice of a stopped run is put to the test
 YIELD_TOLERANCE = 1e-6  # of the stress; rounding of the return to the yield surface is some 1e-15
 
 
@@ -55,9 +55,9 @@ def _run(case: Case, study) -> tuple[Outcome, Prepared]:
 
 def _verdict(case: Case, study, outcome: Outcome, prepared: Prepared) -> tuple[str, str]:
     if outcome.status in FAILED:
-        if case.may_stop or _smaller_step_helps(case, study):
+        if case.may_stop or _advice_helps(case, study, outcome.reason):
             return STOPPED, outcome.reason
-        return FAIL, f"{outcome.reason}, but a smaller step does not help"
+        return FAIL, f"{outcome.reason}: neither helps"
     if found := faults(outcome, prepared):
         return FAIL, f"undetected: {'; '.join(found)}"
     error = abs(balance_error(outcome, prepared))
@@ -66,9 +66,12 @@ def _verdict(case: Case, study, outcome: Outcome, prepared: Prepared) -> tuple[s
     return (DONE if error <= CLOSED else OPEN), outcome.reason
 
 
-def _smaller_step_helps(case: Case, study) -> bool:
-    smaller = study.with_changes({"time.step_fraction": SMALLER_STEP * study.time.step_fraction})
-    outcome, prepared = _run(case, smaller)
+def _advice_helps(case: Case, study, reason: str) -> bool:
+    """Run again as the reason of a stop says: with smaller steps, or with a longer foreland where it names that."""
+    advice = {"time.step_fraction": SMALLER_STEP * study.time.step_fraction}
+    if "geometry.foreland_m" in reason:
+        advice = {"geometry.foreland_m": LONGER_FORELAND * study.geometry.foreland_m}
+    outcome, prepared = _run(case, study.with_changes(advice))
     return outcome.status not in FAILED and not faults(outcome, prepared)
 
 

@@ -27,7 +27,7 @@ def inertia(grid, row, column, last_column, share):
     """Factor by which a node beside a wall is slowed down, at most 1.
 
     Within half a cell of a wall the hat of the node beside it holds next to no mass where the body is thin, but all of
-    its stiffness k^2 V M: at a share s of the mass of both nodes it swings at c k / sqrt(s), which no time step follows.
+    its stiffness k^2 V M: at a share s of the mass of both nodes it swings at c k / sqrt(s), too fast for any step.
     Below the share that the step resolves its inertia is that share of the mass of both.
     """
     m, factor = grid.mass[row, column], 1.0
@@ -44,7 +44,8 @@ def inertia(grid, row, column, last_column, share):
 def update_grid(grid, walls, box, gravity, dt, share):
     """Solve m dv/dt = f - m g on the touched nodes, within what the walls allow.
 
-    `share`: see `inertia`. The change of velocity that goes back to the points includes what the walls took of the mapped momentum.
+    The change of velocity that goes back to the points includes what the walls took of the mapped momentum. `share`: of
+    the mass at a wall, see `inertia`.
 
     Returns (gain of kinetic energy, work taken by the walls), both [J/m].
     """
