@@ -7,7 +7,7 @@ from rfmpm.benchmark.stability.case import Sweep
 from rfmpm.benchmark.stability.guard import Guard
 from rfmpm.benchmark.stability.pictures import MEANINGS, draw_overview, draw_sweep
 from rfmpm.benchmark.stability.sweeps import all_sweeps, few
-from rfmpm.benchmark.stability.verdict import CLOSED, FAIL, KINDS, REFUSED, STOPPED, TOO_FAR_OPEN, Verdict
+from rfmpm.benchmark.stability.verdict import CLOSED, FAIL, KINDS, REFUSED, STOPPED, TOO_FAR_OPEN, UNBALANCED, Verdict
 
 PATIENCE = 120.0  # [s] for one case
 EXAMPLES = 4  # of each reason in the report's table
@@ -84,13 +84,13 @@ def _counts(verdicts: Sequence[Verdict]) -> str:
 
 
 def _failures(found: Found) -> list[str]:
-    lines = _table(found, FAIL)
-    return ["## What failed", "", *(lines or ["Nothing."]), ""]
+    worst = [*_reasons(found, FAIL), *_reasons(found, UNBALANCED)]
+    return ["## What failed", "", *(worst or ["Nothing.", ""])]
 
 
 def _reasons(found: Found, kind: str) -> list[str]:
     lines = _table(found, kind)
-    return [f"{MEANINGS[kind].capitalize()}:", "", *lines, ""] if lines else []
+    return [f"{MEANINGS[kind][0].upper()}{MEANINGS[kind][1:]}:", "", *lines, ""] if lines else []
 
 
 def _table(found: Found, kind: str) -> list[str]:

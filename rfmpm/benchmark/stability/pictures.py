@@ -5,19 +5,39 @@ from math import isfinite
 from pathlib import Path
 
 from rfmpm.benchmark.stability.case import Sweep
-from rfmpm.benchmark.stability.verdict import CLOSED, DONE, FAIL, KINDS, OPEN, REFUSED, STOPPED, TOO_FAR_OPEN, Verdict
+from rfmpm.benchmark.stability.verdict import (
+    CLOSED,
+    DONE,
+    FAIL,
+    FAILURES,
+    KINDS,
+    OPEN,
+    REFUSED,
+    STOPPED,
+    TOO_FAR_OPEN,
+    UNBALANCED,
+    Verdict,
+)
 from rfmpm.report.style import DOTS_PER_INCH, drawing, new_figure
 
-COLOURS = {DONE: "#7fc79f", OPEN: "#d9ecb2", STOPPED: "#9ecae9", REFUSED: "#d0d0d0", FAIL: "#d6301d"}
+COLOURS = {
+    DONE: "#7fc79f",
+    OPEN: "#d9ecb2",
+    STOPPED: "#9ecae9",
+    REFUSED: "#d0d0d0",
+    UNBALANCED: "#e8862e",
+    FAIL: "#c01f2e",
+}
 MEANINGS = {
     DONE: f"done, energy closed to {100 * CLOSED:g} %",
     OPEN: f"done, energy open by up to {100 * TOO_FAR_OPEN:g} %",
     STOPPED: "stopped for the right reason",
     REFUSED: "refused in the right words",
-    FAIL: "FAILED",
+    UNBALANCED: f"FAILED: energy open by more than {100 * TOO_FAR_OPEN:g} %",
+    FAIL: "FAILED otherwise",
 }
 PLACE = (0.72, 0.34)  # inches of one place of a table
-CELLS_PER_INCH_OF_TEXT = 13  # letters
+LETTERS_PER_INCH = 13
 
 
 def places(sweep: Sweep, verdicts: Sequence[Verdict]) -> dict[tuple[str, str], list[Verdict]]:
@@ -36,7 +56,7 @@ def worst(verdicts: Sequence[Verdict]) -> str:
 def draw_sweep(sweep: Sweep, verdicts: Sequence[Verdict], path: Path) -> None:
     """Draw a sweep as a table: the colour is the verdict, the number the error of the energy balance in per cent."""
     rows, columns = (list(dict.fromkeys(getattr(case, name) for case in sweep.cases)) for name in ("row", "column"))
-    width = PLACE[0] * len(columns) + max(len(row) for row in rows) / CELLS_PER_INCH_OF_TEXT + 0.6
+    width = PLACE[0] * len(columns) + max(len(row) for row in rows) / LETTERS_PER_INCH + 0.6
     with drawing():
         figure = new_figure(max(width, 7.0), PLACE[1] * len(rows) + 1.5)
         axes = figure.add_subplot()
@@ -58,7 +78,7 @@ def _draw_place(axes, column: int, row: int, verdicts: Sequence[Verdict]) -> Non
 
     kind = worst(verdicts)
     axes.add_patch(Rectangle((column - 0.48, row - 0.46), 0.96, 0.92, color=COLOURS[kind], linewidth=0))
-    style = {"color": "white", "weight": "bold"} if kind == FAIL else {"color": "#222222"}
+    style = {"color": "white", "weight": "bold"} if kind in FAILURES else {"color": "#222222"}
     axes.text(column, row, _label(kind, verdicts), ha="center", va="center", fontsize=8.5, **style)
 
 
@@ -85,7 +105,7 @@ def draw_overview(found: Sequence[tuple[Sweep, Sequence[Verdict]]], path: Path) 
                 share = 100.0 * kinds.count(kind) / len(kinds)
                 axes.barh(row, share, 0.8, left, color=COLOURS[kind])
                 if share > 3.0:
-                    text = {"color": "white", "weight": "bold"} if kind == FAIL else {"color": "#222222"}
+                    text = {"color": "white", "weight": "bold"} if kind in FAILURES else {"color": "#222222"}
                     axes.text(
                         left + 0.5 * share, row, kinds.count(kind), ha="center", va="center", fontsize=8.5, **text
                     )

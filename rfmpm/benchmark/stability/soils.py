@@ -40,6 +40,7 @@ def _draw(rng: np.random.Generator, cov: float, scale_v: float) -> dict:
 
     modulus, ratio = of_size(1e3, 5e4), even(0.2, 0.49)
     peak = of_size(5.0, 50.0)
+    rough = {"kind": "friction", "coefficient": even(0.1, 0.8)}
     snap_back = sqrt(3.0) * 0.5 * modulus / (1.0 + ratio)
     return {
         "geometry.height_m": 0.5 * int(rng.integers(6, 17)),
@@ -52,7 +53,7 @@ def _draw(rng: np.random.Generator, cov: float, scale_v: float) -> dict:
         "material.0.residual_cohesion_kpa": peak * even(0.1, 1.0),
         "material.0.softening_modulus_kpa": min(of_size(5.0, 200.0), 0.9 * snap_back),
         "material.0.softening_reference_cell_m": 0.5,
-        "boundary.base": {"kind": "friction", "coefficient": even(0.1, 0.8)} if rng.random() < 0.5 else {"kind": "fixed"},
+        "boundary.base": rough if rng.random() < 0.5 else {"kind": "fixed"},
         "random_field.cohesion": {
             "material": "clay",
             "distribution": str(rng.choice(["lognormal", "normal_truncated"])),
@@ -62,4 +63,4 @@ def _draw(rng: np.random.Generator, cov: float, scale_v: float) -> dict:
             "scale_of_fluctuation_v_m": scale_v,
         },
         "time.end_s": 15.0,
-    }  # fmt: skip
+    }

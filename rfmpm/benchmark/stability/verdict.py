@@ -15,7 +15,8 @@ from rfmpm.realisation import Outcome, Prepared
 from rfmpm.study import StudyError
 from rfmpm.variables import FAILED
 
-DONE, OPEN, STOPPED, REFUSED, FAIL = KINDS = ("done", "open", "stopped", "refused", "FAIL")
+DONE, OPEN, STOPPED, REFUSED, UNBALANCED, FAIL = KINDS = ("done", "open", "stopped", "refused", "unbalanced", "FAIL")
+FAILURES = (UNBALANCED, FAIL)
 CLOSED = 0.005  # energy not accounted for, as a share, up to which a balance counts as closed
 TOO_FAR_OPEN = 0.05
 SMALLER_STEP, LONGER_FORELAND = 0.25, 3.0  # factors with which the advice of a stopped run is put to the test
@@ -62,7 +63,7 @@ def _verdict(case: Case, study, outcome: Outcome, prepared: Prepared) -> tuple[s
         return FAIL, f"undetected: {'; '.join(found)}"
     error = abs(balance_error(outcome, prepared))
     if not error <= TOO_FAR_OPEN:
-        return FAIL, f"energy balance open by {100 * error:.3g} %"
+        return UNBALANCED, f"energy balance open by {100 * error:.3g} %"
     return (DONE if error <= CLOSED else OPEN), outcome.reason
 
 
