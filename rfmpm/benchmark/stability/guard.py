@@ -52,7 +52,7 @@ class Guard:
 
 def serve(line: Connection) -> None:
     """Judge what comes in until nothing more does."""
-    with suppress(EOFError):
+    with suppress(EOFError, BrokenPipeError):
         while True:
             case = line.recv()
             try:
