@@ -148,8 +148,8 @@ def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int) ->
         until = min(observer.next_sample, study.time.end_s)
         now = advance(now, until, *arguments)
         observer.sample(now)
-    status, reason = _verdict(now, study)
     final = observer.points()
+    status, reason = _verdict(now, study, scene, final)
     cohesion = fields.get("cohesion", getattr(scene.material, "cohesion_kpa", nan) * 1e3)
     final["cohesion"] = np.broadcast_to(cohesion, final["x"].shape)
     quantities = _quantities(prepared, own, final, observer, now, status)
@@ -165,17 +165,24 @@ def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int) ->
     )
 
 
-def _verdict(now: Progress, study) -> tuple[str, str]:
+def _verdict(now: Progress, study, scene: scenes.Scene, points: dict[str, np.ndarray]) -> tuple[str, str]:
     """Status of a run that has ended, and its reason in words."""
     speed = f"at {now.time:.3g} s; try a smaller time.step_fraction than {study.time.step_fraction:g}"
-    if now.status == AT_REST:
-        return "ok", ""
     if now.status == LEFT_GRID:
+        y, vy = points["y"][now.culprit], points["velocity_y"][now.culprit]
+        if y > scene.body.top - scene.cell and vy > 0.0:
+            place = f"point {now.culprit} left the grid over its top at x = {points['x'][now.culprit]:.3g} m"
+            return "left_grid", f"{place} {speed}, or a longer geometry.foreland_m if soil splashed up at the far wall"
         return "left_grid", f"point {now.culprit} left the grid {speed}"
-    if now.status == NOT_A_NUMBER:
+    if now.status == NOT_A_NUMBER or not np.isfinite(points["stress_xx"] + points["stress_xy"]).all():
         return "diverged", f"a value is not a number {speed}"
     if now.status == ENERGY_GREW:
         return "diverged", f"energy came from nothing {speed}"
+    smallest = int(np.argmin(points["volume"]))
+    if points["volume"][smallest] <= 0.0:
+        return "diverged", f"point {smallest} turned inside out, found {speed}"
+    if now.status == AT_REST:
+        return "ok", ""
     return "not_at_rest", f"still moving at time.end_s = {study.time.end_s:g} s"
 
 

@@ -12,6 +12,9 @@ from rfmpm.study.schema import one_of
 LARGEST_POINT_COUNT = 5_000_000
 LARGEST_CELL_COUNT = 20_000_000
 LARGEST_BIN_COUNT = 100_000
+LARGEST_STEP_COUNT = 1_000_000_000
+HIGHEST_SELF_COMPRESSION = 0.5  # of the lowest soil under the weight above, by small-strain elasticity
+GRAVITY = 9.81  # [m/s2]
 LARGEST_CHOLESKY_COUNT = 20_000
 LARGEST_CELL_OVER_LENGTH = 1.0  # of a softening length; the transfer itself averages over 0.7 cells
 HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION = 0.99  # towards 1 a truncated normal becomes exponential
@@ -105,6 +108,41 @@ def _surface_bins_are_affordable(known: Known) -> Iterator[Problem]:
         yield problem(known, "output.surface_bin_m", text)
 
 
+def _constrained_modulus(known: Known, index: int) -> float:
+    """Constrained modulus of a material [kPa]."""
+    modulus, ratio = known[f"material.{index}.youngs_modulus_kpa"], known[f"material.{index}.poissons_ratio"]
+    return modulus * (1 - ratio) / ((1 + ratio) * (1 - 2 * ratio))
+
+
+def _stiffness_carries_the_weight(known: Known) -> Iterator[Problem]:
+    """The soil must bear its own weight at strains for which the law and the initial stresses have a meaning."""
+    height = known["geometry.height_m"]
+    for index in range(len(known["material"])):
+        weight = known[f"material.{index}.unit_weight_kn_m3"] * height
+        limit = weight / HIGHEST_SELF_COMPRESSION
+        modulus = _constrained_modulus(known, index)
+        if modulus < limit:
+            key = f"material.{index}.youngs_modulus_kpa"
+            text = (
+                f"must be at least {known[key] * limit / modulus:.4g}: under its own weight of {weight:.4g} kPa "
+                f"softer soil is compressed by more than {100 * HIGHEST_SELF_COMPRESSION:g} %"
+            )
+            yield problem(known, key, text)
+
+
+def _steps_are_affordable(known: Known) -> Iterator[Problem]:
+    cell, fraction, end = known["discretisation.cell_m"], known["time.step_fraction"], known["time.end_s"]
+    for index in range(len(known["material"])):
+        modulus, weight = _constrained_modulus(known, index), known[f"material.{index}.unit_weight_kn_m3"]
+        steps = end / fraction * sqrt(modulus / weight) * sqrt(GRAVITY) / cell
+        if steps > LARGEST_STEP_COUNT:
+            text = (
+                f"takes about {_rounded(steps)} time steps with these cells and this stiffness, at most "
+                f"{LARGEST_STEP_COUNT:,}: end by {end * LARGEST_STEP_COUNT / steps:.3g} s, or take larger cells"
+            )
+            yield problem(known, "time.end_s", text)
+
+
 def _residual_is_below_the_peak(known: Known) -> Iterator[Problem]:
     for index in range(len(known["material"])):
         if known[f"material.{index}.law"] == "von_mises":
@@ -196,6 +234,8 @@ CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _points_are_affordable,
     _cells_are_affordable,
     _surface_bins_are_affordable,
+    _stiffness_carries_the_weight,
+    _steps_are_affordable,
     _residual_is_below_the_peak,
     _softening_does_not_snap_back,
     _softening_has_one_length,

@@ -397,6 +397,9 @@ def test_block_needs_whole_cells_too_and_may_be_confined(study):
     assert problems_of(study, {"geometry": {**block, "width_m": 0.3}})[0].startswith("geometry.width_m = 0.3")
 
 
+SCALED = {"material.0.softening_length_m": None, "material.0.softening_reference_cell_m": 0.25}
+
+
 @pytest.mark.parametrize(
     ("changes", "divisor"),
     [
@@ -407,6 +410,7 @@ def test_block_needs_whole_cells_too_and_may_be_confined(study):
     ids=["as given", "scaled to the cell", "sqrt_3j2"],
 )
 def test_softening_that_snaps_back_is_refused(study, changes, divisor):
+    changes = SCALED | changes
     shear_modulus = 1000.0 / (2.0 * 1.33)
     steepest = math.sqrt(3.0) * shear_modulus / divisor
     study.with_changes({**changes, "material.0.softening_modulus_kpa": steepest * 0.999})
@@ -415,27 +419,24 @@ def test_softening_that_snaps_back_is_refused(study, changes, divisor):
 
 
 def test_unscaled_softening_does_not_look_at_the_cells(study):
-    unscaled = study.with_changes({"material.0.softening_reference_cell_m": None, "discretisation.cell_m": 1.0})
+    unscaled = study.with_changes({"material.0.softening_length_m": None, "discretisation.cell_m": 1.0})
     assert unscaled.with_changes({"material.0.softening_modulus_kpa": 650.0}).material[0].softening_modulus_kpa == 650.0
 
 
-NONLOCAL = {"material.0.softening_reference_cell_m": None, "material.0.softening_length_m": 0.5}
-
-
 def test_softening_over_a_length_of_the_soil_needs_cells_no_larger(study):
-    study.with_changes({**NONLOCAL, "discretisation.cell_m": 0.5})
-    (problem,) = problems_of(study, {**NONLOCAL, "discretisation.cell_m": 1.0})
+    study.with_changes({"discretisation.cell_m": 0.5})
+    (problem,) = problems_of(study, {"discretisation.cell_m": 1.0})
     assert problem.startswith("material.0.softening_length_m = 0.5: must be at least 1 m with these cells")
 
 
 def test_softening_has_a_length_or_a_reference_cell_but_not_both(study):
-    (problem,) = problems_of(study, {"material.0.softening_length_m": 0.5})
+    (problem,) = problems_of(study, {"material.0.softening_reference_cell_m": 0.25})
     assert "cannot be given together with softening_length_m" in problem
 
 
 def test_softening_over_a_length_may_be_steeper_than_the_unloading(study):
     # Within a step the strength stays as it is, so that no stress has to be found on a line that snaps back.
-    study.with_changes({**NONLOCAL, "material.0.softening_modulus_kpa": 1e4})
+    study.with_changes({"material.0.softening_modulus_kpa": 1e4})
 
 
 def test_field_needs_a_material_with_a_cohesion(study):

@@ -9,6 +9,8 @@ from rfmpm.mpm.solvers.grid import clear, divide_straining, subtract_second_proj
 from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNING, Progress
 from rfmpm.mpm.transfer import carry_points, project_twice, update_velocities
 
+RESOLVED_SHARE = 0.5  # of the square of the Courant number: a node's share of the mass at a wall that a step resolves
+
 
 class Controls(NamedTuple):
     """Numbers that steer the time integration."""
@@ -40,7 +42,7 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
         dt = controls.courant * controls.cell / (controls.wave_speed + now.fastest)
         since_filter = now.since_filter + dt
         filtering = now.step_count % controls.filter_interval == 0 and controls.dissipation_time < inf
-        gain, friction = update_grid(grid, walls, box, controls.gravity, dt)
+        gain, friction = update_grid(grid, walls, box, controls.gravity, dt, RESOLVED_SHARE * controls.courant**2)
     if filtering:
         blend = 1.0 - exp(-since_filter / controls.dissipation_time)
         since_filter = 0.0

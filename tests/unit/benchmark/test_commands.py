@@ -1,0 +1,21 @@
+"""The commands end with a report, whatever the machine's figures are."""
+
+import pytest
+from typer.testing import CliRunner
+
+from rfmpm.cli import app
+
+REPORTS = {
+    "stability": ["Will an odd soil break it?", "What failed", "stability_softening.png"],
+    "savings": ["grid cells that no point touches", "imports that `rfmpm check` does not use"],
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", REPORTS)
+def test_quick_benchmark_writes_its_report(tmp_path, name):
+    result = CliRunner().invoke(app, ["benchmark", name, "--quick", "--out", str(tmp_path)])
+    assert result.exit_code == 0
+    text = (tmp_path / f"{name}.md").read_text(encoding="utf-8")
+    assert all(part in text for part in REPORTS[name])
+    assert all((tmp_path / line.split("(")[1].rstrip(")")).is_file() for line in text.splitlines() if line[:2] == "![")
