@@ -46,7 +46,7 @@ class PerfectlyPlastic(NamedTuple):
     shear: float  # [Pa]
     cohesion: float  # [Pa]
 
-    def update_stress(self, stress, strain_increment, history):
+    def update_stress(self, stress, strain_increment, history, dt):
         """Elastic predictor, return to sqrt(J2) = c."""
         trial = hooke(self.lame, self.shear, stress, strain_increment)
         mean = (trial.xx + trial.yy + trial.zz) / 3.0
@@ -100,8 +100,8 @@ def _seconds(work: Callable[[], Any]) -> float:
 def untouched_cells(bench: Bench) -> Saving:
     """The grid's work over the nodes that points touch, and over all of them."""
     scene = bench.plain.scene
-    points, law, past, grid = scenes.release(scene, None)
-    now = advance(start(), 0.1, points, law, past, scene.axes, grid, scene.walls, scene.controls)
+    own = scenes.release(scene, None)
+    grid, now = own.grid, advance(start(), 0.1, *scenes.arguments(scene, own))
     rows, columns = grid.mass.shape
     touched = now.first_column, now.last_column, now.first_row, now.last_row
 
@@ -109,7 +109,7 @@ def untouched_cells(bench: Bench) -> Saving:
         for _ in range(CALLS):
             update_grid(grid, scene.walls, box, 0.0, 0.0, 1e-9)
             clear(grid.sums, box)
-            clear(grid.mass, box)
+            clear(grid.parts, box)
 
     extra = bench.least(lambda: sweep((0, columns - 1, 0, rows - 1))) - bench.least(lambda: sweep(touched))
     steps = bench.outcome.step_count
@@ -127,8 +127,9 @@ def shared_stress(bench: Bench) -> Saving:
 
     def solve():
         elastic_gravity_stress(
-            position, scene.points.mass, scene.points.volume, scene.axes, scene.walls, scene.lame, scene.shear, 9.81
-        )
+            position, scene.points.mass, scene.points.volume, scene.axes, scene.walls, scene.lame, scene.shear, 9.81,
+            scene.cell_means,
+        )  # fmt: skip
 
     return Saving(
         "initial stresses shared by an ensemble",
@@ -168,10 +169,9 @@ def stop_at_rest(bench: Bench, residual: float) -> Saving:
 def step_of_the_moment(bench: Bench) -> Saving:
     """One step for the whole run, that of its fastest moment."""
     scene, fastest = bench.plain.scene, 0.0
-    points, law, past, grid = scenes.release(scene, None)
-    now = start()
+    arguments, now = scenes.arguments(scene, scenes.release(scene, None)), start()
     while now.time < bench.outcome.history["time"][-1]:
-        now = advance(now, now.time + 0.05, points, law, past, scene.axes, grid, scene.walls, scene.controls)
+        now = advance(now, now.time + 0.05, *arguments)
         fastest = max(fastest, now.fastest)
     controls = scene.controls
     steps = now.time * (controls.wave_speed + fastest) / (controls.courant * controls.cell)
@@ -199,10 +199,10 @@ def no_history(bench: Bench) -> Saving:
     scene = replace(bench.plain.scene, material=law)
 
     def steps(is_bare: bool):
-        points, law, past, grid = scenes.release(scene, None)
+        own = scenes.release(scene, None)
         if is_bare:
-            law, past = PerfectlyPlastic(law.lame, law.shear, 10e3), None
-        advance(start(), 2.0, points, law, past, scene.axes, grid, scene.walls, scene.controls)
+            own = own._replace(law=PerfectlyPlastic(own.law.lame, own.law.shear, 10e3), history=None)
+        advance(start(), 2.0, *scenes.arguments(scene, own))
 
     steps(True)
     bare, full = bench.least(lambda: steps(True)), bench.least(lambda: steps(False))

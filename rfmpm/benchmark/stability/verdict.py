@@ -115,14 +115,15 @@ def yield_excess(outcome: Outcome, prepared: Prepared) -> float:
         The largest change of stress of any point over the size of its stress [-]; 0 inside the surface.
     """
     points = outcome.points
-    _, law, history, _ = release(prepared.scene, points["cohesion"])
+    own = release(prepared.scene, points["cohesion"])
+    law, history = own.law, own.history
     if history is not None:
         history = history._replace(plastic_strain=points["plastic_strain"])
     stress = Tensor(*(points[f"stress_{name}"] for name in Tensor._fields))
     worst, none = 0.0, Tensor(0.0, 0.0, 0.0, 0.0)
     for p in range(len(points["x"])):
         old = at(stress, p)
-        new, _ = update_stress(at(law, p), old, none, at(history, p))
+        new, _ = update_stress(at(law, p), old, none, at(history, p), 0.0)  # no time: what viscosity holds stays
         change = sqrt(sum((a - b) ** 2 for a, b in zip(old, new, strict=True)))
         size = sqrt(sum(a * a for a in old))
         worst = max(worst, change / size if size > 0.0 else 0.0 if change == 0.0 else inf)
