@@ -64,7 +64,7 @@ class Discretisation(Table):
     points_per_cell: Annotated[Literal[1, 4, 9, 16], BeforeValidator(_whole)] = Field(
         description="Material points in a full cell"
     )
-    shape: Literal["linear", "quadratic_bspline"] = Field(description="Shape function")
+    shape: Literal["linear", "gimp", "quadratic_bspline", "cubic_bspline"] = Field(description="Shape function")
     dissipation_time_s: Annotated[float, Strict(), Hint("inf for no dissipation")] = Field(
         5.0, gt=0, description="Time in which the transfer damps velocities below the grid's resolution [s]; inf = none"
     )
