@@ -29,9 +29,10 @@ def plain_run(scene, transfer, order, time, body_force=None, **settings):
     points, law, history, _ = scenes.release(scene, None)
     settings = Settings(**{name: getattr(scene.controls, name) for name in Settings._fields})._replace(**settings)
     carried = None if isinstance(transfer, Flip) else still_gradient(len(points.mass))
+    nodes = empty_nodes(scene.axes)
     now = advance(
-        wind_up(points), time, points, carried, law, history, scene.axes, empty_nodes(scene.axes), scene.walls,
-        transfer, ORDERS[order], settings, body_force,
+        wind_up(points, law, history, scene.axes, nodes), time, points, carried, law, history, scene.axes, nodes,
+        scene.walls, transfer, ORDERS[order], settings, body_force,
     )  # fmt: skip
     return now, points, history
 

@@ -4,8 +4,8 @@ It is the oracle of the engine in `mpm.transfer`, and the place where schemes ar
 """
 
 from rfmpm.mpm.solvers.reference.protocols import TRANSFERS, Apic, Flip, Tpic
-from rfmpm.mpm.solvers.reference.state import ORDERS, Clock, Settings, empty_nodes, still_gradient, wind_up
-from rfmpm.mpm.solvers.reference.step import advance
+from rfmpm.mpm.solvers.reference.state import ORDERS, Clock, Settings, empty_nodes, still_gradient
+from rfmpm.mpm.solvers.reference.step import advance, wind_up
 
 __all__ = [
     "ORDERS",

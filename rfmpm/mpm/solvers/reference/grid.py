@@ -75,14 +75,18 @@ def add_term(nodes):
 
 
 @kernel
-def clear(vector):
-    """Set both components to zero."""
-    vector.x[:] = 0.0
-    vector.y[:] = 0.0
+def copy(vector, source):
+    """Copy both components."""
+    rows, columns = vector.x.shape
+    for row in range(rows):
+        for column in range(columns):
+            vector.x[row, column], vector.y[row, column] = source.x[row, column], source.y[row, column]
 
 
 @kernel
-def copy(vector, source):
-    """Copy both components."""
-    vector.x[:] = source.x
-    vector.y[:] = source.y
+def clear(vector):
+    """Set both components to zero."""
+    rows, columns = vector.x.shape
+    for row in range(rows):
+        for column in range(columns):
+            vector.x[row, column] = vector.y[row, column] = 0.0

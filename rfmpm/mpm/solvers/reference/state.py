@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rfmpm.kernel_tools import Vector
-from rfmpm.mpm.state import Axes, Points
+from rfmpm.mpm.state import Axes
 
 ORDERS = {"usl": 0, "musl": 1, "usf": 2}
 STRESS_LAST, SECOND_MAPPING, STRESS_FIRST = ORDERS.values()
@@ -53,11 +53,6 @@ class Clock(NamedTuple):
     since_filter: float  # time since the filter last acted [s]
     fastest: float  # largest point speed [m/s]
     lost: int  # point that left the grid or is no number, or -1
-
-
-def wind_up(points: Points) -> Clock:
-    """Make the clock of a run that has not begun."""
-    return Clock(0.0, 0, 0.0, float(np.hypot(*points.velocity).max()), -1)
 
 
 def empty_nodes(axes: Axes) -> Nodes:

@@ -2,6 +2,8 @@
 
 from math import exp, inf
 
+import numpy as np
+
 from rfmpm.kernel_tools import kernel
 from rfmpm.mpm.solvers.reference.grid import add_term, clear, copy, divide, hold, hold_where_held, solve
 from rfmpm.mpm.solvers.reference.points import (
@@ -14,6 +16,12 @@ from rfmpm.mpm.solvers.reference.points import (
 )
 from rfmpm.mpm.solvers.reference.protocols import filter_terms
 from rfmpm.mpm.solvers.reference.state import SECOND_MAPPING, STRESS_FIRST, STRESS_LAST, Clock
+
+
+def wind_up(points, law, history, axes, nodes):
+    """Let what starts beyond its strength yield. Returns the clock of a run that has not begun; arguments as below."""
+    strain(points, law, history, axes, nodes.velocity, 0.0)
+    return Clock(0.0, 0, 0.0, float(np.hypot(*points.velocity).max()), -1)
 
 
 @kernel
@@ -38,13 +46,14 @@ def step(now, points, carried, law, history, axes, nodes, walls, transfer, order
         filter_velocity(points, axes, nodes, filter_terms(transfer))
     update_velocities(points, carried, transfer, axes, nodes, blend, settings.cell)
     if order == STRESS_LAST:
-        strain(points, law, history, axes, nodes.velocity, dt)
+        copy(nodes.straining, nodes.velocity)
     elif order == SECOND_MAPPING:
         nodes.mass[:] = 0.0
         clear(nodes.momentum)
         map_momentum(points, carried, axes, nodes.mass, nodes.momentum, settings.cell)
         divide(nodes.straining, nodes.mass, nodes.momentum)
         hold_where_held(nodes.straining, nodes.velocity)
+    if order != STRESS_FIRST:
         strain(points, law, history, axes, nodes.straining, dt)
     fastest, lost = move(points, axes, nodes.velocity, dt)
     return Clock(now.time + dt, now.step_count + 1, since, fastest, lost)
@@ -66,7 +75,7 @@ def advance(now, until, points, carried, law, history, axes, nodes, walls, trans
     """Step until the time is `until` or later, or a point is lost.
 
     Args:
-        now: clock; `wind_up(points)` at the beginning.
+        now: clock; from `wind_up` at the beginning.
         until: model time [s].
         points, history: arrays, changed in place.
         carried: velocity gradients of the points, changed in place, for APIC and TPIC; None for FLIP.
@@ -82,8 +91,6 @@ def advance(now, until, points, carried, law, history, axes, nodes, walls, trans
     Returns:
         The clock.
     """
-    if now.step_count == 0:
-        strain(points, law, history, axes, nodes.velocity, 0.0)  # what starts beyond its strength yields at once
     while now.lost < 0 and now.time < until:
         now = step(now, points, carried, law, history, axes, nodes, walls, transfer, order, settings, body_force)
     return now

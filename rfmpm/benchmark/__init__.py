@@ -1,0 +1,1 @@
+"""Run time against error, measured where the program runs."""

@@ -1,0 +1,111 @@
+"""The generalised vortex, a manufactured solution: Kamojjala, Brannon, Sadeghirad and Guilkey (2015), section 4.
+
+A ring of inner radius 0.75 m and outer radius 1.25 m turns by the angle a(r, t) = g(t) h(r) about its centre, with
+g = A sin(pi t / T) and h = 1 - 32 d^2 + 256 d^4, d = r - 1: both edges stand still and are free of stress. Radii do
+not change, so that the first radius is the present one, and the volume does not either.
+
+Stress of the engine's own law (Hooke's in rate form; the stress turns with the body, so its rate is Jaumann's): in the
+axes (r, theta), which turn at w = g' h, the spin is w + s/2 and the only rate of deformation D_rt = s/2, where
+s = d(gamma)/dt with the shear gamma = r da/dr. Hence the rates of s_rr, s_tt and s_rt with respect to gamma are
+-s_rt, s_rt and G + (s_rr - s_tt) / 2, which from zero give
+
+    s_rt = G sin(gamma),    s_tt = -s_rr = G (1 - cos(gamma)).
+
+Momentum, rho a = div s + rho b with a_r = -r w^2 and a_t = r dw/dt, then asks for
+
+    b_r = -r w^2 + G / rho (sin(gamma) gamma' + 2 (1 - cos(gamma)) / r),
+    b_t = r dw/dt - G / rho (cos(gamma) gamma' + 2 sin(gamma) / r),    gamma' = g (h' + r h'').
+"""
+
+from dataclasses import replace
+from math import cos, hypot, pi, sin, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from rfmpm.benchmark.blocks import elastic_block
+from rfmpm.benchmark.runs import Measurement, Run, timed
+from rfmpm.benchmark.schemes import Scheme
+from rfmpm.kernel_tools import Tensor, Vector
+from rfmpm.mpm import scene as scenes
+from rfmpm.mpm.shapes import build_axis
+from rfmpm.mpm.state import Axes, Points
+
+NAME, TITLE = "vortex", "Generalised vortex"
+ERRORS = {"position": "error of the positions over the mean radius [1]"}
+INNER, OUTER, CENTRE, DOMAIN = 0.75, 1.25, 1.5, 3.0  # [m]
+MODULUS, POISSON, DENSITY = 1e6, 0.3, 1000.0  # [Pa], [1], [kg/m3]
+SHEAR = 0.5 * MODULUS / (1.0 + POISSON)
+AMPLITUDE, DURATION = pi, 1.0  # [rad], [s]
+
+
+class Vortex(NamedTuple):
+    """The force that keeps the ring on its way."""
+
+    amplitude: float  # [rad]
+    duration: float  # T [s]
+    specific_shear: float  # G / rho [m2/s2]
+    centre: float  # both coordinates [m]
+
+    def acceleration(self, x, y, time):
+        """Components (x, y) of b [m/s2]."""
+        to_x, to_y = x - self.centre, y - self.centre
+        r = hypot(to_x, to_y)
+        d, rate = r - 1.0, pi / self.duration
+        h, slope, bend = 1.0 - 32.0 * d * d + 256.0 * d**4, -64.0 * d + 1024.0 * d**3, -64.0 + 3072.0 * d * d
+        g = self.amplitude * sin(rate * time)
+        spin, spin_up = self.amplitude * rate * cos(rate * time) * h, -rate * rate * g * h
+        gamma, gradient = r * g * slope, g * (slope + r * bend)
+        radial = -r * spin * spin + self.specific_shear * (sin(gamma) * gradient + 2.0 * (1.0 - cos(gamma)) / r)
+        around = r * spin_up - self.specific_shear * (cos(gamma) * gradient + 2.0 * sin(gamma) / r)
+        return (radial * to_x - around * to_y) / r, (radial * to_y + around * to_x) / r
+
+
+def turn(radius: np.ndarray, time: float, amplitude: float) -> np.ndarray:
+    """Angle by which the ring has turned at a radius [m] and time [s]; same shape as `radius` [rad]."""
+    d = radius - 1.0
+    return amplitude * np.sin(pi * time / DURATION) * (1.0 - 32.0 * d**2 + 256.0 * d**4)
+
+
+def ring(spacing: float) -> tuple[np.ndarray, np.ndarray]:
+    """Fill the ring with points on circles, about `spacing` [m] apart.
+
+    Returns:
+        Positions relative to the centre, shape (n, 2) [m], and volumes, shape (n,) [m3/m].
+    """
+    circles = round((OUTER - INNER) / spacing)
+    thickness = (OUTER - INNER) / circles
+    places, volumes = [], []
+    for radius in INNER + (np.arange(circles) + 0.5) * thickness:
+        count = round(2.0 * pi * radius / spacing)
+        angle = 2.0 * pi * (np.arange(count) + 0.5) / count
+        places.append(radius * np.column_stack([np.cos(angle), np.sin(angle)]))
+        volumes.append(np.full(count, 2.0 * pi * radius * thickness / count))
+    return np.concatenate(places), np.concatenate(volumes)
+
+
+def measure(scheme: Scheme, cells: int, repeats: int, amplitude: float = AMPLITUDE, end: float = DURATION):
+    """Run the vortex on so many cells across the domain and compare the points' places, root mean square."""
+    cell = DOMAIN / cells
+    study = elastic_block(3.0 * cell, cell, cell, scheme.shape, scheme.points_per_cell, DENSITY, MODULUS, POISSON)
+    place, volume = ring(cell / sqrt(scheme.points_per_cell))
+    radius, zero = np.hypot(*place.T), np.zeros(len(volume))
+    d = radius - 1.0
+    spin = amplitude * pi / DURATION * (1.0 - 32.0 * d**2 + 256.0 * d**4)
+    points = Points(
+        Vector(CENTRE + place[:, 0], CENTRE + place[:, 1]),
+        Vector(-spin * place[:, 1], spin * place[:, 0]),
+        DENSITY * volume,
+        volume,
+        Tensor(zero, zero, zero, zero),
+    )
+    axis = build_axis(scheme.shape, cell, cells, scheme.points_per_cell)
+    built = scenes.build(study)
+    scene = replace(built, points=points, axes=Axes(axis, axis), controls=built.controls._replace(gravity=0.0))
+    force = Vortex(amplitude, DURATION, SHEAR / DENSITY, CENTRE)
+    cpu_time, run, _ = timed(lambda: Run(scene, scheme, force), lambda run: run.until(end), repeats)
+    angle = np.arctan2(place[:, 1], place[:, 0]) + turn(radius, run.time, amplitude)
+    off_x = run.points.position.x - CENTRE - radius * np.cos(angle)
+    off_y = run.points.position.y - CENTRE - radius * np.sin(angle)
+    error = np.nan if run.is_broken else float(np.sqrt(np.average(off_x**2 + off_y**2, weights=volume)))
+    return Measurement(NAME, scheme, cell, cpu_time, {"position": error})
