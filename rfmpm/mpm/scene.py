@@ -16,7 +16,7 @@ from rfmpm.mpm.laws import LAWS
 from rfmpm.mpm.laws.elastic import lame_constants
 from rfmpm.mpm.laws.history import NonlocalHistory
 from rfmpm.mpm.nonlocal_softening import Averaging, averaging
-from rfmpm.mpm.shapes import SHAPES
+from rfmpm.mpm.shapes import build_axis
 from rfmpm.mpm.solvers import Controls
 from rfmpm.mpm.state import Axes, Grid, Points, copy_points
 
@@ -59,8 +59,8 @@ def build(study) -> Scene:
     position, volume = fill(shape.outline, cell, study.discretisation.points_per_cell)
     density = material.unit_weight_kn_m3 * 1e3 / GRAVITY
     lame, shear = lame_constants(material.youngs_modulus_kpa * 1e3, material.poissons_ratio)
-    axis = SHAPES[study.discretisation.shape]
-    axes = Axes(*(axis(1.0 / cell, round(extent / cell)) for extent in (shape.length, shape.top)))
+    kind, per_cell = study.discretisation.shape, study.discretisation.points_per_cell
+    axes = Axes(*(build_axis(kind, cell, round(extent / cell), per_cell) for extent in (shape.length, shape.top)))
     walls = Walls(_wall(study.boundary.base), _wall(study.boundary.sides))
     mass = density * volume
     length = getattr(material, "softening_length_m", None)
@@ -72,7 +72,7 @@ def build(study) -> Scene:
         gravity=GRAVITY,
         cell=cell,
         wave_speed=sqrt((lame + 2.0 * shear) / density),
-        courant=study.time.step_fraction * axis.COURANT,
+        courant=study.time.step_fraction * axes.x.COURANT,
         dissipation_time=study.discretisation.dissipation_time_s,
         filter_interval=FILTER_INTERVAL,
         average_interval=AVERAGE_SHARE * length / sqrt(shear / density) if length else inf,
@@ -80,7 +80,7 @@ def build(study) -> Scene:
         rest_time=REST_TIME,
         energy_scale=elastic_energy(points, lame, shear),
         growth_limit=GROWTH_LIMIT,
-        second_mapping=True if study.discretisation.shape == "linear" else None,
+        second_mapping=axes.x.SECOND_MAPPING,
     )
     return Scene(shape, cell, points, axes, walls, controls, material, lame, shear, averaged)
 

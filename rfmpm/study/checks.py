@@ -19,6 +19,7 @@ LARGEST_CHOLESKY_COUNT = 20_000
 LARGEST_CELL_OVER_LENGTH = 1.0  # of a softening length; the transfer itself averages over 0.7 cells
 HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION = 0.99  # towards 1 a truncated normal becomes exponential
 SMALLEST_CELLS = {("slope", "height_m"): 4, ("slope", "crest_m"): 2, ("block", "width_m"): 2, ("block", "height_m"): 1}
+WIDEST_SPLINE_CELLS = 3  # cells that the four nodes of a cubic B-spline span
 
 
 def joint_problems(known: Known) -> list[Problem]:
@@ -37,6 +38,8 @@ def joint_problems(known: Known) -> list[Problem]:
 def _lengths_fit_the_cells(known: Known, name: str) -> Iterator[Problem]:
     kind, cell, length = known["geometry.kind"], known["discretisation.cell_m"], known[f"geometry.{name}"]
     least, cells = SMALLEST_CELLS[kind, name], length / cell
+    if kind == "block" and name == "width_m" and known["discretisation.shape"] == "cubic_bspline":
+        least = WIDEST_SPLINE_CELLS
     if isclose(cells, round(cells), rel_tol=1e-9) and round(cells) >= least:
         return
     nearest = [cell * count for count in (floor(cells), floor(cells) + 1) if count >= least] or [cell * least]

@@ -65,7 +65,7 @@ class Discretisation(Table):
     points_per_cell: Annotated[Literal[1, 4, 9, 16], BeforeValidator(_whole)] = Field(
         description="Material points in a full cell"
     )
-    shape: Literal["linear", "quadratic_bspline"] = Field(description="Shape function")
+    shape: Literal["linear", "gimp", "quadratic_bspline", "cubic_bspline"] = Field(description="Shape function")
     volumetric_strain: Literal["cell_mean", "point"] = Field(
         "cell_mean", description="Volumetric strain and pressure: mean over the points of a cell, or each point's own"
     )

@@ -7,13 +7,22 @@ from hypothesis import strategies as st
 
 from rfmpm.kernel_tools import kernel
 from rfmpm.mpm.protocols import weights
-from rfmpm.mpm.shapes import SHAPES
+from rfmpm.mpm.shapes import SHAPES, build_axis
 
 every_shape = pytest.mark.parametrize("kind", SHAPES.values(), ids=SHAPES)
 # Cells whose multiples round up and down, and so do the walls' coordinates.
 CELLS, COUNTS = (0.25, 0.1, 0.3, 1.0 / 3.0, 7e-3), (2, 3, 7, 80)
 IDENTITY = 1e-12
 untimed = settings(deadline=None)  # the first example compiles
+
+
+# Pieces of polynomials meet at half cells; those of the hat averaged over half a cell (4 points) at quarter cells.
+PIECES_PER_CELL = 4
+
+
+def axis_of(kind, cell, count):
+    """An axis of about as many cells; the wider splines need some."""
+    return kind(1.0 / cell, max(count, kind.FEWEST_CELLS))
 
 
 @kernel
@@ -23,11 +32,11 @@ def compiled(axis, x):
 
 @st.composite
 def places(draw):
-    """(cell, number of cells, coordinate), the ends and the half cells of the axis as often as the rest."""
+    """(cell, number of cells, coordinate), the ends and the knots of the axis as often as the rest."""
     cell, count = draw(st.sampled_from(CELLS)), draw(st.sampled_from(COUNTS))
     length = count / (1.0 / cell)
-    halves = st.integers(0, 2 * count).map(lambda half: 0.5 * half * cell)
-    x = draw(st.one_of(st.floats(0.0, length), halves, st.sampled_from((0.0, length, np.nextafter(length, 0.0)))))
+    knots = st.integers(0, PIECES_PER_CELL * count).map(lambda knot: knot * cell / PIECES_PER_CELL)
+    x = draw(st.one_of(st.floats(0.0, length), knots, st.sampled_from((0.0, length, np.nextafter(length, 0.0)))))
     return cell, count, min(x, length)
 
 
@@ -47,8 +56,9 @@ def on_all_nodes(axis, x):
 @given(place=places())
 def test_weights_sum_to_one_and_reproduce_a_line_up_to_the_walls(kind, place):
     cell, count, x = place
-    value, slope = on_all_nodes(kind(1.0 / cell, count), x)
-    nodes = np.arange(count + 1) * cell
+    axis = axis_of(kind, cell, count)
+    value, slope = on_all_nodes(axis, x)
+    nodes = np.arange(axis.cells + 1) * cell
     assert value.sum() == pytest.approx(1.0, abs=IDENTITY)
     assert slope.sum() * cell == pytest.approx(0.0, abs=IDENTITY)
     assert value @ nodes == pytest.approx(x, abs=IDENTITY * count * cell)
@@ -62,11 +72,15 @@ def test_weights_sum_to_one_and_reproduce_a_line_up_to_the_walls(kind, place):
 @given(place=places())
 def test_slopes_are_those_of_the_weights(kind, place):
     cell, count, x = place
-    axis, step = kind(1.0 / cell, count), 1e-3 * cell
-    piece = np.floor(2.0 * x / cell)  # pieces meet at half cells; stay inside one
-    x = 0.5 * cell * (min(piece, 2 * count - 1) + np.clip(2.0 * x / cell - piece, 4e-3, 1.0 - 4e-3))
-    difference = (on_all_nodes(axis, x + step)[0] - on_all_nodes(axis, x - step)[0]) / (2.0 * step)
-    # Central differences of polynomials up to second order are exact but for rounding over the step.
+    axis, step, knot = axis_of(kind, cell, count), 1e-3 * cell, cell / PIECES_PER_CELL
+    piece = np.floor(x / knot)  # stay inside one
+    x = knot * (min(piece, PIECES_PER_CELL * count - 1) + np.clip(x / knot - piece, 0.01, 0.99))
+    near, far = (
+        (on_all_nodes(axis, x + reach)[0] - on_all_nodes(axis, x - reach)[0]) / (2.0 * reach)
+        for reach in (step, 2.0 * step)
+    )
+    # Central differences, extrapolated, of polynomials up to third order are exact but for rounding over the step.
+    difference = (4.0 * near - far) / 3.0
     np.testing.assert_allclose(on_all_nodes(axis, x)[1] * cell, difference * cell, rtol=0.0, atol=1e-10)
 
 
@@ -75,7 +89,7 @@ def test_slopes_are_those_of_the_weights(kind, place):
 @given(place=places())
 def test_weights_are_continuous(kind, place):
     cell, count, x = place
-    axis = kind(1.0 / cell, count)
+    axis = axis_of(kind, cell, count)
     near = abs(x - 1e-9 * cell)
     # No weight changes faster than one per cell.
     np.testing.assert_allclose(on_all_nodes(axis, x)[0], on_all_nodes(axis, near)[0], rtol=0.0, atol=1.1e-9)
@@ -85,10 +99,11 @@ def test_weights_are_continuous(kind, place):
 @pytest.mark.parametrize("cell", CELLS)
 @pytest.mark.parametrize("count", COUNTS)
 def test_a_wall_has_the_value_of_its_node(kind, cell, count):
-    axis = kind(1.0 / cell, count)
-    assert np.array_equal(on_all_nodes(axis, 0.0)[0], np.eye(count + 1)[0])
+    axis = axis_of(kind, cell, count)
+    assert np.array_equal(on_all_nodes(axis, 0.0)[0], np.eye(axis.cells + 1)[0])
     # Identity: the far wall's coordinate is rounded.
-    np.testing.assert_allclose(on_all_nodes(axis, count * cell)[0], np.eye(count + 1)[-1], rtol=0.0, atol=IDENTITY)
+    far = on_all_nodes(axis, axis.cells * cell)[0]
+    np.testing.assert_allclose(far, np.eye(axis.cells + 1)[-1], rtol=0.0, atol=IDENTITY)
 
 
 @every_shape
@@ -107,9 +122,29 @@ def test_weights_mirror_from_wall_to_wall(kind):
 @given(place=places())
 def test_compiled_weights_are_the_plain_python_ones(kind, place):
     cell, count, x = place
-    axis = kind(1.0 / cell, count)
+    axis = axis_of(kind, cell, count)
     first, value, slope = weights(axis, x)
     found_first, found_value, found_slope = compiled(axis, x)
     assert found_first == first
     np.testing.assert_allclose(found_value, value, rtol=0.0, atol=IDENTITY)
     np.testing.assert_allclose(found_slope, slope, rtol=0.0, atol=IDENTITY / cell)
+
+
+def test_points_of_fixed_size_lie_between_hats_and_quadratic_splines():
+    hat, spline = SHAPES["linear"](4.0, 7), SHAPES["quadratic_bspline"](4.0, 7)
+    for x in np.linspace(0.0, 1.75, 36):
+        widest, narrowest = SHAPES["gimp"](4.0, 7, 0.5), SHAPES["gimp"](4.0, 7, 1e-9)
+        np.testing.assert_allclose(on_all_nodes(widest, x)[0], on_all_nodes(spline, x)[0], rtol=0.0, atol=IDENTITY)
+        # A point of no length differs from a hat only within its own length of a node.
+        np.testing.assert_allclose(on_all_nodes(narrowest, x)[0], on_all_nodes(hat, x)[0], rtol=0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize(("points_per_cell", "half_size"), [(1, 0.5), (4, 0.25), (16, 0.125)])
+def test_points_fill_their_cell(points_per_cell, half_size):
+    assert build_axis("gimp", 0.5, 8, points_per_cell) == SHAPES["gimp"](2.0, 8, half_size)
+
+
+@every_shape
+def test_every_shape_is_built_by_its_name(kind):
+    name = next(name for name, value in SHAPES.items() if value is kind)
+    assert build_axis(name, 0.5, 8, 4) == kind(2.0, 8)

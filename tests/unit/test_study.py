@@ -394,6 +394,8 @@ def test_block_needs_whole_cells_too_and_may_be_confined(study):
     study.with_changes({"geometry": block})
     (problem,) = problems_of(study, {"geometry": {**block, "width_m": 0.25}})  # three nodes of a spline need two cells
     assert problem.endswith("at least 2; nearest: 0.5")
+    (problem,) = problems_of(study, {"geometry": block, "discretisation.shape": "cubic_bspline"})  # four need three
+    assert problem.endswith("at least 3; nearest: 0.75")
     assert problems_of(study, {"geometry": {**block, "width_m": 0.3}})[0].startswith("geometry.width_m = 0.3")
 
 

@@ -28,6 +28,8 @@ HEIGHT, CELL = 4.0, 0.5  # [m]
 SHIFT = 1e-8
 IDENTITY = 1e-12
 every_shape = pytest.mark.parametrize("shape", SHAPES)
+# Four nodes wide, a cubic B-spline has more nodes in a column than one point per cell can hold still.
+held_by_one_point = pytest.mark.parametrize("shape", [shape for shape in SHAPES if shape != "cubic_bspline"])
 both_bases = pytest.mark.parametrize("base", ["fixed", "roller"])
 
 
@@ -71,9 +73,11 @@ def vertical_error(points, cell=CELL):
     return (points.stress.yy + WEIGHT * (HEIGHT - points.position.y)) / (WEIGHT * cell)
 
 
-@pytest.mark.parametrize("points_per_cell", [1, 4, 9])
+@pytest.mark.parametrize(
+    ("shape", "points_per_cell"),
+    [(shape, count) for shape in SHAPES for count in (1, 4, 9) if (shape, count) != ("cubic_bspline", 1)],
+)
 @both_bases
-@every_shape
 def test_column_is_at_rest_under_its_horizontal_stress(shape, base, points_per_cell):
     stress = column(shape=shape, base=base, points_per_cell=points_per_cell).stress
     horizontal = POISSON / (1.0 - POISSON) * stress.yy
@@ -85,7 +89,7 @@ def test_column_is_at_rest_under_its_horizontal_stress(shape, base, points_per_c
 
 
 @both_bases
-@every_shape
+@held_by_one_point
 def test_one_point_per_cell_carries_the_weight_above_it(shape, base):
     points = column(shape=shape, base=base, points_per_cell=1)
     np.testing.assert_allclose(vertical_error(points), 0.0, atol=SHIFT * HEIGHT / CELL)
@@ -125,7 +129,7 @@ def test_bspline_column_errs_near_base_and_top_only(base):
 @pytest.mark.parametrize("points_per_cell", [4, 9, 16])
 @every_shape
 def test_stress_of_a_column_converges(shape, points_per_cell):
-    cells = np.array([1.0, 0.5, 0.25])
+    cells = np.array([0.5, 0.25, 0.125])
     options = {"shape": shape, "points_per_cell": points_per_cell}
     errors = [np.abs(cell * vertical_error(column(cell=cell, **options), cell)).max() for cell in cells]
     slope_of_fit = np.polyfit(np.log(cells), np.log(errors), 1)[0]

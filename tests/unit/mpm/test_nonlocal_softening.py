@@ -9,7 +9,7 @@ from rfmpm.kernel_tools import Tensor, Vector
 from rfmpm.mpm.geometry import fill
 from rfmpm.mpm.laws.history import NonlocalHistory
 from rfmpm.mpm.nonlocal_softening import OVERSHOOT, average_softening, averaging, shape_variance
-from rfmpm.mpm.shapes import SHAPES
+from rfmpm.mpm.shapes import SHAPES, build_axis
 from rfmpm.mpm.state import Axes, Points
 
 LENGTH, WIDTH, HEIGHT = 0.5, 8.0, 4.0  # [m]
@@ -18,7 +18,7 @@ every_shape = pytest.mark.parametrize("shape", SHAPES)
 
 def averaged(strain, cell=0.125, shape="quadratic_bspline", before=0.0):
     """Horizontal positions, and softening strain of points that fill the domain with a plastic strain of x."""
-    axes = Axes(*(SHAPES[shape](1.0 / cell, round(extent / cell)) for extent in (WIDTH, HEIGHT)))
+    axes = Axes(*(build_axis(shape, cell, round(extent / cell), 4) for extent in (WIDTH, HEIGHT)))
     outline = np.array([(0.0, 0.0), (WIDTH, 0.0), (WIDTH, HEIGHT), (0.0, HEIGHT)])
     position, volume = fill(outline, cell, 4)
     x, y = position.T.copy()
@@ -56,4 +56,4 @@ def test_strength_once_lost_stays_lost():
 @pytest.mark.parametrize(("shape", "variance"), [("linear", 1 / 6), ("quadratic_bspline", 1 / 4)])
 def test_variance_of_a_shape(shape, variance):
     # The mean over 64 midpoints misses the integral of f (1 - f) by 1 / (12 * 64^2) = 2.03e-5.
-    assert shape_variance(SHAPES[shape](2.0, 12)) == pytest.approx(variance, abs=2.1e-5)
+    assert shape_variance(build_axis(shape, 0.5, 12, 4)) == pytest.approx(variance, abs=2.1e-5)

@@ -1,0 +1,104 @@
+"""One run of a scene by one scheme, whichever solver carries it out."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from math import inf
+from typing import Any
+
+from rfmpm.benchmark.schemes import TRANSFERS, Scheme
+from rfmpm.mpm import scene as scenes
+from rfmpm.mpm.scene import Scene
+from rfmpm.mpm.solvers import SOLVERS
+from rfmpm.mpm.solvers.reference import ORDERS, Flip, Settings, advance, empty_nodes, still_gradient, wind_up
+from rfmpm.mpm.state import RUNNING, start
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One point of a figure."""
+
+    scene: str
+    scheme: Scheme
+    cell: float  # [m]
+    cpu_time: float  # [s], the least of the repeats; NaN where none was completed
+    errors: dict[str, float] = field(default_factory=dict)  # by name; NaN where the run broke
+
+
+class Run:
+    """A scene on its way; `time` and `points` tell where it is.
+
+    Args:
+        scene: the scene; its points are copied.
+        scheme: how it is solved; its shape is the scene's already.
+        body_force: acceleration besides gravity, for the plain solver only.
+    """
+
+    def __init__(self, scene: Scene, scheme: Scheme, body_force: Any = None):
+        self.scene, self.body_force = scene, body_force
+        self.transfer, dissipation_time = TRANSFERS[scheme.transfer]
+        self.order = scheme.order
+        self.own = scenes.release(scene, None)
+        self.points, self.law, self.history = self.own.points, self.own.law, self.own.history
+        controls = scene.controls._replace(dissipation_time=dissipation_time)
+        self.is_plain = scheme.engine == "plain"
+        if self.is_plain:
+            interval = 1 if dissipation_time == 0.0 else controls.filter_interval
+            settings = Settings(**{name: getattr(controls, name) for name in Settings._fields})
+            self.controls = settings._replace(filter_interval=interval)
+            self.carried = None if isinstance(self.transfer, Flip) else still_gradient(len(self.points.mass))
+            self.grid = empty_nodes(scene.axes)
+            self.now = wind_up(self.points, self.law, self.history, scene.axes, self.grid)
+        else:
+            # Neither rest nor its own judgement of the energy ends a run that is to be compared.
+            self.controls = controls._replace(
+                rest_time=inf, energy_scale=inf, second_mapping=True if self.order == "musl" else None
+            )
+            self.now = start()
+
+    @property
+    def time(self) -> float:
+        """Model time [s]."""
+        return self.now.time
+
+    @property
+    def is_broken(self) -> bool:
+        """Whether a point has left the grid or is no number."""
+        return self.now.lost >= 0 if self.is_plain else self.now.status != RUNNING
+
+    def until(self, end: float, gravity: float | None = None) -> None:
+        """Advance to a model time [s], or a step further; under another gravity [m/s2] if given."""
+        scene = self.scene
+        if gravity is not None:
+            self.controls = self.controls._replace(gravity=gravity)
+        if self.is_plain:
+            self.now = advance(
+                self.now, end, self.points, self.carried, self.law, self.history, scene.axes, self.grid, scene.walls,
+                self.transfer, ORDERS[self.order], self.controls, self.body_force,
+            )  # fmt: skip
+        else:
+            arguments = scenes.arguments(replace(scene, controls=self.controls), self.own)
+            self.now = SOLVERS["explicit"](self.now, end, *arguments)
+
+
+def timed(make: Callable[[], Run], drive: Callable[[Run], Any], repeats: int) -> tuple[float, Run, Any]:
+    """Drive a run several times.
+
+    Args:
+        make: makes the run, not timed.
+        drive: drives it to its end.
+        repeats: how often; once where the run breaks.
+
+    Returns:
+        Least CPU time of this process [s], the last run, and what `drive` returned last.
+    """
+    make().until(0.0)  # compiles
+    least = inf
+    for _ in range(repeats):
+        run = make()
+        started = time.process_time()
+        found = drive(run)
+        least = min(least, time.process_time() - started)
+        if run.is_broken:
+            break
+    return least, run, found
