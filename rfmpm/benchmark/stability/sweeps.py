@@ -212,7 +212,7 @@ def long_run() -> Sweep:
     soils = {"elastic": {"material.0": ELASTIC}, "plastic, c = 4": _strength(4.0, 4.0, 0.0)}
     rates = _each("discretisation.dissipation_time_s", (float("inf"), 5.0), "{:g} s")
     rows = {f"{name}, {soil}": shape | soils[soil] for name, shape in _all_shapes().items() for soil in soils}
-    base = {"geometry": block(1.0, 1.0, 1.0)}
+    base = {"geometry": block(1.5, 1.0, 1.0)}
     cases = []
     for row, column, changes in _table(rows, rates):
         courant = 0.5 * SHAPES[changes["discretisation.shape"]].COURANT
