@@ -173,17 +173,19 @@ def steep_and_flat() -> Sweep:
 
 def lone_point() -> Sweep:
     """One point in an empty grid, dropped from every kind of place in a cell."""
-    places = (0.0, 1e-12, 0.1, 0.25, 0.4999999, 0.5, 0.75, 0.9, 0.999999999999)
+    near = 1e-12
+    places = {"0": 0.0, "0 + 1e-12": near, "0.1": 0.1, "0.25": 0.25, "½ - 1e-12": 0.5 - near, "0.5": 0.5, "0.75": 0.75,
+              "0.9": 0.9, "1 - 1e-12": 1.0 - near}  # fmt: skip
     heights = (1e-12, 0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 3.7)
     base = {"geometry": block(2.0, 2.0, 2.0), "time.end_s": 5.0}
     cases = [
         Case(
             f"{name}, {height:g} up",
-            f"{place:.12g}",
+            label,
             base | changes,
             arrange=partial(arrangements.lone_point, 2.0 + place, height),
         )
-        for (name, changes), height, place in product(_all_shapes().items(), heights, places)
+        for (name, changes), height, (label, place) in product(_all_shapes().items(), heights, places.items())
     ]
     return Sweep("lone_point", "One point in an empty cell", "shape, height [cells]", "place in its cell", cases)
 

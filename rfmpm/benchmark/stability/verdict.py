@@ -19,7 +19,8 @@ DONE, OPEN, STOPPED, REFUSED, UNBALANCED, FAIL = KINDS = ("done", "open", "stopp
 FAILURES = (UNBALANCED, FAIL)
 CLOSED = 0.005  # energy not accounted for, as a share, up to which a balance counts as closed
 TOO_FAR_OPEN = 0.05
-SMALLER_STEP, LONGER_FORELAND = 0.25, 3.0  # factors with which the advice of a stopped run is put to the test
+SMALLER_STEP, LONGER_FORELAND = 0.25, 12.0  # factors with which the advice of a stopped run is put to the test
+NO_FALL = 1e-9  # [m] of the whole body: no work to speak of
 YIELD_TOLERANCE = 1e-6  # of the stress; rounding of the return to the yield surface is some 1e-15
 
 
@@ -79,13 +80,15 @@ def _advice_helps(case: Case, study, reason: str) -> bool:
 def balance_error(outcome: Outcome, prepared: Prepared) -> float:
     """Energy not accounted for, as a share of gravity's work, or of the elastic energy at the start if that is more.
 
-    A slope that only rings under its own weight takes next to no work from gravity; a share of that says nothing.
+    A slope that only rings under its own weight takes next to no work from gravity; a share of that says nothing. A
+    body that lies still without stress has no energy to account for.
     """
-    points = outcome.points
-    fall = np.sum(prepared.scene.points.mass * (points["y_initial"] - points["y"]))
-    work = abs(GRAVITY * fall)
+    points, mass = outcome.points, prepared.scene.points.mass
+    work = abs(GRAVITY * np.sum(mass * (points["y_initial"] - points["y"])))
     whole = max(work, prepared.scene.controls.energy_scale)
-    return float(outcome.quantities["energy_balance_error"] * work / whole) if whole > 0.0 else nan
+    if whole < NO_FALL * GRAVITY * np.sum(mass):
+        return 0.0
+    return float(outcome.quantities["energy_balance_error"] * work / whole)
 
 
 def faults(outcome: Outcome, prepared: Prepared) -> list[str]:
