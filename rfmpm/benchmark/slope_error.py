@@ -50,7 +50,9 @@ def run(study: Any, adapt: Callable[[Scene], Scene] = lambda scene: scene, **cha
     Returns:
         The result.
     """
-    changed = study.with_changes({"time.end_s": END} | {key.replace("__", "."): value for key, value in changes.items()})
+    changed = study.with_changes(
+        {"time.end_s": END} | {key.replace("__", "."): value for key, value in changes.items()}
+    )
     prepared = realisation.prepare(changed)
     prepared = replace(prepared, scene=adapt(prepared.scene))
     outcome = realisation.simulate(prepared, homogeneous=True)
@@ -103,7 +105,9 @@ def time_step_rows(study: Any, fractions=FRACTIONS) -> Iterator[str]:
 
 def constant_rows(study: Any) -> Iterator[str]:
     """Rows of the table over the numerical constants, each halved and doubled."""
-    yield "| residual cohesion [kPa] | constant | " + " | ".join(_label(name, unit) for name, unit in QUANTITIES.items())
+    yield "| residual cohesion [kPa] | constant | " + " | ".join(
+        _label(name, unit) for name, unit in QUANTITIES.items()
+    )
     yield "|---" * (len(QUANTITIES) + 2) + "|"
     for residual in RESIDUALS:
         base = None
@@ -151,8 +155,7 @@ def softening_rows(study: Any, cells=CELLS) -> Iterator[str]:
     for label, keys in SOFTENING.items():
         changes = {f"material__0__{key}": value for key, value in (PLAIN | keys).items()}
         results = [
-            run(study, material__0__residual_cohesion_kpa=8.0, discretisation__cell_m=cell, **changes)
-            for cell in cells
+            run(study, material__0__residual_cohesion_kpa=8.0, discretisation__cell_m=cell, **changes) for cell in cells
         ]
         for name, unit in QUANTITIES.items():
             values = [result.values[name] for result in results]

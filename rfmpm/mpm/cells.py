@@ -13,7 +13,6 @@ import numpy as np
 from rfmpm.kernel_tools import kernel
 from rfmpm.mpm.stages import XX, YY
 
-
 SMALLEST = 1e-300  # [m3/m]
 
 

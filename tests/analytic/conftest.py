@@ -24,7 +24,12 @@ def block_study(width, height, foreland, cell=0.25, base=None, **changes) -> Stu
         {
             "study": {"name": "elastic block", "seed": 1},
             "geometry": {"kind": "block", "width_m": width, "height_m": height, "foreland_m": foreland},
-            "discretisation": {"cell_m": cell, "points_per_cell": 4, "shape": "quadratic_bspline", "volumetric_strain": "point"},
+            "discretisation": {
+                "cell_m": cell,
+                "points_per_cell": 4,
+                "shape": "quadratic_bspline",
+                "volumetric_strain": "point",
+            },
             "boundary": {"base": base or {"kind": "roller"}, "sides": {"kind": "roller"}},
             "material": [
                 {

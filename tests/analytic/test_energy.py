@@ -82,8 +82,12 @@ def test_energy_balance_of_the_bar_closes_with_the_time_step(blocks, volumetric_
 @pytest.mark.parametrize("shape", ["quadratic_bspline", "linear"])
 def test_energy_balance_of_a_collapse_closes_whatever_the_time_step(residual, shape):
     study = rfmpm.load_study(SHORT_SLOPE).with_changes(
-        {"discretisation.cell_m": 0.5, "time.end_s": 3.0, "material.0.residual_cohesion_kpa": residual,
-         "discretisation.shape": shape}
+        {
+            "discretisation.cell_m": 0.5,
+            "time.end_s": 3.0,
+            "material.0.residual_cohesion_kpa": residual,
+            "discretisation.shape": shape,
+        }
     )
     dissipated = []
     for fraction in (0.8, 0.2):
