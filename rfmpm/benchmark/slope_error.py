@@ -124,7 +124,8 @@ def constant_rows(study: Any) -> Iterator[str]:
 def cell_rows(study: Any, cells=CELLS) -> Iterator[str]:
     """Rows of the table over the cells, with the extrapolated value, its band, and what a run takes."""
     heads = " | ".join(f"{cell:g} m" for cell in cells)
-    yield f"| residual cohesion [kPa] | quantity | {heads} | last two | extrapolated | order | error at {cells[1]:g} m |"
+    last = f"last two | extrapolated | order | error at {cells[1]:g} m"
+    yield f"| residual cohesion [kPa] | quantity | {heads} | {last} |"
     yield "|---" * (len(cells) + 6) + "|"
     for residual in RESIDUALS:
         results = [

@@ -35,8 +35,8 @@ from rfmpm.mpm.state import CHANGE_X, X, Y
 def carry_points(points, law, history, axes, grid, cells, filtered, blend, straining, dt):
     """Carry the points through the grid: grid to point, stress, point to grid.
 
-    It reads the velocities of the old positions from `grid.flow` and adds to `grid.parts` and `grid.sums`, which must be
-    zero, at the new ones; with zero `flow` and `dt` it only adds. Without `cells` it is one pass over the points, a
+    It reads the velocities of the old positions from `grid.flow` and adds to `grid.parts` and `grid.sums`, which must
+    be zero, at the new ones; with zero `flow` and `dt` it only adds. Without `cells` it is one pass over the points, a
     block at a time, so that a point's data cross the memory once a step; with them (means over the points of a cell),
     the sums over all points before the stress and before the force make it three.
 
@@ -70,7 +70,7 @@ def carry_points(points, law, history, axes, grid, cells, filtered, blend, strai
 
 @kernel
 def carry_by_cells(points, law, history, axes, grid, cells, filtered, blend, straining, dt, scratch, tally, box):
-    """Carry the points with means over the points of a cell. Returns the point that left the grid or -1, and the box."""
+    """Carry the points with means over those of a cell. Returns the point that left the grid or -1, and the box."""
     count = points.mass.size
     cells.sums[:] = 0.0
     for first in range(0, count, BLOCK):

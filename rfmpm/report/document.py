@@ -11,8 +11,10 @@ from rfmpm.report.question import NAMES, answer, question, reservations
 
 MOST_REASONS = 20  # rows of the table of failures; report.json has all
 QUALITY_NAMES = {
-    "energy_balance_error": "energy not accounted for",
+    "plastic_work_share": "work of plastic flow",
+    "friction_work_share": "work of friction on base and sides",
     "numerical_dissipation_share": "energy dissipated by the method itself",
+    "energy_balance_error": "energy not accounted for",
 }
 
 

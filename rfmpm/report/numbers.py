@@ -12,7 +12,7 @@ from rfmpm.estimators.intervals import clopper_pearson
 
 CONFIDENCE = 0.95
 SPREAD = ("run_out", "failure_volume", "retrogression_distance")
-QUALITY = ("energy_balance_error", "numerical_dissipation_share")
+QUALITY = ("plastic_work_share", "friction_work_share", "numerical_dissipation_share", "energy_balance_error")
 PICTURED = (("median", 0.5), ("95th percentile", 0.95), ("worst", 1.0))
 
 

@@ -77,6 +77,7 @@ def test_python_example_runs(tmp_path):
         "geometry.foreland_m": 8.0,
         "time.end_s": 1.0,
         "output.surface_bin_m": 1.0,
+        "material.0.softening_length_m": 1.0,
     }
     config = "configs/short_slope_random.toml"
     (tmp_path / "configs").mkdir()

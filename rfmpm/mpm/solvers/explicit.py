@@ -68,7 +68,7 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
         moved = carry_points(points, law, history, axes, grid, cells, None, blend, grid.straining, dt)
     kinetic, fall, work, plastic, fastest, touched, culprit = moved
     since_average = now.since_average + dt
-    if averaging is not None:
+    if averaging is not None:  # noqa: SIM102  (an argument that is None is pruned here, not within a condition)
         if since_average >= controls.average_interval and culprit < 0:
             average_softening(points, history, axes, averaging, touched)
             since_average = 0.0
