@@ -105,9 +105,8 @@ def time_step_rows(study: Any, fractions=FRACTIONS) -> Iterator[str]:
 
 def constant_rows(study: Any) -> Iterator[str]:
     """Rows of the table over the numerical constants, each halved and doubled."""
-    yield "| residual cohesion [kPa] | constant | " + " | ".join(
-        _label(name, unit) for name, unit in QUANTITIES.items()
-    )
+    heads = " | ".join(_label(name, unit) for name, unit in QUANTITIES.items())
+    yield f"| residual cohesion [kPa] | constant | {heads} |"
     yield "|---" * (len(QUANTITIES) + 2) + "|"
     for residual in RESIDUALS:
         base = None

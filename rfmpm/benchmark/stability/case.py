@@ -10,7 +10,7 @@ from rfmpm.study import Study
 
 CELL = 0.5  # [m]
 
-# The short slope of Vardon, Wang and Hicks (2017) on coarse cells: a run takes a fraction of a second.
+# The short slope of the main study on coarse cells: a run takes a fraction of a second.
 SLOPE = {
     "study": {"name": "stress test", "seed": 20160901},
     "geometry": {"kind": "slope", "height_m": 5.0, "crest_m": 10.0, "angle_deg": 45.0, "foreland_m": 25.0},
@@ -26,7 +26,8 @@ SLOPE = {
             "cohesion_kpa": 20.0,
             "residual_cohesion_kpa": 4.0,
             "softening_modulus_kpa": 50.0,
-            "softening_reference_cell_m": 0.25,
+            "softening_length_m": 0.5,
+            "viscosity_kpa_s": 0.3,
         }
     ],
     "time": {"end_s": 20.0},

@@ -42,6 +42,12 @@ def _draw(rng: np.random.Generator, cov: float, scale_v: float) -> dict:
     peak = of_size(5.0, 50.0)
     rough = {"kind": "friction", "coefficient": even(0.1, 0.8)}
     snap_back = sqrt(3.0) * 0.5 * modulus / (1.0 + ratio)
+    own_length = {"material.0.softening_length_m": even(0.5, 1.5), "material.0.viscosity_kpa_s": even(0.0, 1.0)}
+    by_cell = {
+        "material.0.softening_length_m": None,
+        "material.0.softening_reference_cell_m": 0.5,
+        "material.0.viscosity_kpa_s": 0.0,
+    }
     return {
         "geometry.height_m": 0.5 * int(rng.integers(6, 17)),
         "geometry.angle_deg": even(20.0, 90.0),
@@ -52,7 +58,7 @@ def _draw(rng: np.random.Generator, cov: float, scale_v: float) -> dict:
         "material.0.cohesion_kpa": peak,
         "material.0.residual_cohesion_kpa": peak * even(0.1, 1.0),
         "material.0.softening_modulus_kpa": min(of_size(5.0, 200.0), 0.9 * snap_back),
-        "material.0.softening_reference_cell_m": 0.5,
+        **(own_length if rng.random() < 0.5 else by_cell),
         "boundary.base": rough if rng.random() < 0.5 else {"kind": "fixed"},
         "random_field.cohesion": {
             "material": "clay",

@@ -112,15 +112,21 @@ def stiffness() -> Sweep:
 
 
 def softening() -> Sweep:
-    """Softening modulus up to snap-back and past it."""
-    rows = {
+    """Softening modulus up to snap-back and past it, which only softening over a length may go."""
+    local = {
+        "material.0.softening_length_m": None,
+        "material.0.softening_reference_cell_m": 0.25,
+        "material.0.viscosity_kpa_s": 0.0,
+    }
+    residuals = {
         f"residual {residual:g} kPa": {"material.0.residual_cohesion_kpa": residual}
         for residual in (12.0, 4.0, 1.0, 0.01)
     }
+    rows = residuals | {f"{name}, by the cell": changes | local for name, changes in residuals.items()}
     shares = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999999, 1.01, 10.0)
     columns = {f"{share:.7g}": {"material.0.softening_modulus_kpa": share * SNAP_BACK} for share in shares}
     cases = [
-        Case(*place, refusal="softening_modulus_kpa" if float(place[1]) > 1.0 else "")
+        Case(*place, refusal="softening_modulus_kpa" if float(place[1]) > 1.0 and "by the cell" in place[0] else "")
         for place in _table(rows, columns)
     ]
     return Sweep("softening", "Softening", "residual cohesion", "softening modulus over that of snap-back", cases)

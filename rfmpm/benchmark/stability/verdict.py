@@ -78,17 +78,18 @@ def _advice_helps(case: Case, study, reason: str) -> bool:
 
 
 def balance_error(outcome: Outcome, prepared: Prepared) -> float:
-    """Energy not accounted for, as a share of gravity's work, or of the elastic energy at the start if that is more.
+    """Energy that does not close or that the numerics added, as a share of gravity's work.
 
-    A slope that only rings under its own weight takes next to no work from gravity; a share of that says nothing. A
-    body that lies still without stress has no energy to account for.
+    Of the elastic energy at the start if that is more: a slope that only rings under its own weight takes next to no
+    work from gravity; a share of that says nothing. A body that lies still without stress has no energy to account for.
     """
     points, mass = outcome.points, prepared.scene.points.mass
     work = abs(GRAVITY * np.sum(mass * (points["y_initial"] - points["y"])))
     whole = max(work, prepared.scene.controls.energy_scale)
     if whole < NO_FALL * GRAVITY * np.sum(mass):
         return 0.0
-    return float(outcome.quantities["energy_balance_error"] * work / whole)
+    added = max(0.0, -outcome.quantities["numerical_dissipation_share"])
+    return float((abs(outcome.quantities["energy_balance_error"]) + added) * work / whole)
 
 
 def faults(outcome: Outcome, prepared: Prepared) -> list[str]:
