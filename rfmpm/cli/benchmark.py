@@ -31,3 +31,12 @@ def savings(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:
     from rfmpm.benchmark.savings import run
 
     typer.echo(run(out, quick, typer.echo))
+
+
+@benchmark.command("slope")
+@ends_in_words
+def slope(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:
+    """Run the short slope over time steps, constants, cells and kinds of softening: slope_error.md."""
+    from rfmpm.benchmark.slope_error import CELLS, QUICK_CELLS, write
+
+    typer.echo(write(out, QUICK_CELLS if quick else CELLS, typer.echo))

@@ -67,8 +67,8 @@ def make_rows(study, n=64, failed=(), censored=(), not_at_rest=(), still=(), see
             "time_at_rest": np.nan if index in not_at_rest else 12.0,
             "step_count": 9000,
             "wall_time": float(generator.gamma(20.0, 0.7)),
-            "plastic_work_share": float(generator.uniform(0.6, 0.8)),
-            "friction_work_share": float(generator.uniform(0.1, 0.2)),
+            "plastic_work_share": 0.75,
+            "friction_work_share": 0.15,
             "energy_balance_error": float(10 ** generator.uniform(-5, -3)),
             "numerical_dissipation_share": float(generator.uniform(0.05, 0.2)),
         }
