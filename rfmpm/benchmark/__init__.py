@@ -1,1 +1,1 @@
-"""Run time against error, measured where the program runs."""
+"""What the program is measured by, on the reader's own machine: stability, and what skipping work saves."""

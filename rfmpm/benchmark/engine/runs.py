@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import Any
 
-from rfmpm.benchmark.schemes import TRANSFERS, Scheme
+from rfmpm.benchmark.engine.schemes import TRANSFERS, Scheme
 from rfmpm.mpm import scene as scenes
 from rfmpm.mpm.scene import Scene
 from rfmpm.mpm.solvers import SOLVERS
