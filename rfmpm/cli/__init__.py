@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from rfmpm.cli.benchmark import benchmark
 from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY, end, ends_in_words
 from rfmpm.cli.tables import cost_row, outcome_rows, print_table
 
@@ -19,6 +20,8 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
+
+app.add_typer(benchmark, name="benchmark")
 
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.")]

@@ -17,11 +17,10 @@ def to_nodes(points, inverse, nodes):
         mass, volume = points.mass[p], points.volume[p]
         vx, vy = points.velocity.x[p], points.velocity.y[p]
         sxx, syy, sxy = points.stress.xx[p], points.stress.yy[p], points.stress.xy[p]
+        wx, wy, d = (1.0 - f, f), (1.0 - g, g), (-inverse, inverse)
         for b in range(2):
-            wy, dy = (g, inverse) if b else (1.0 - g, -inverse)
             for a in range(2):
-                wx, dx = (f, inverse) if a else (1.0 - f, -inverse)
-                w, slope_x, slope_y = wx * wy, dx * wy, wx * dy
+                w, slope_x, slope_y = wx[a] * wy[b], d[a] * wy[b], wx[a] * d[b]
                 nodes[j + b, i + a, 0] += w * mass
                 nodes[j + b, i + a, 1] += w * mass * vx
                 nodes[j + b, i + a, 2] += w * mass * vy
@@ -55,15 +54,15 @@ def to_points(points, law, history, inverse, nodes, dt):
         i, j = int(s), int(t)
         f, g = s - i, t - j
         vx = vy = ax = ay = lxx = lxy = lyx = lyy = 0.0
+        wx, wy, d = (1.0 - f, f), (1.0 - g, g), (-inverse, inverse)
         for b in range(2):
-            wy, dy = (g, inverse) if b else (1.0 - g, -inverse)
             for a in range(2):
-                wx, dx = (f, inverse) if a else (1.0 - f, -inverse)
-                w, ux, uy = wx * wy, nodes[j + b, i + a, 1], nodes[j + b, i + a, 2]
+                w, slope_x, slope_y = wx[a] * wy[b], d[a] * wy[b], wx[a] * d[b]
+                ux, uy = nodes[j + b, i + a, 1], nodes[j + b, i + a, 2]
                 vx, vy = vx + w * ux, vy + w * uy
                 ax, ay = ax + w * nodes[j + b, i + a, 3], ay + w * nodes[j + b, i + a, 4]
-                lxx, lxy = lxx + dx * wy * ux, lxy + wx * dy * ux
-                lyx, lyy = lyx + dx * wy * uy, lyy + wx * dy * uy
+                lxx, lxy = lxx + slope_x * ux, lxy + slope_y * ux
+                lyx, lyy = lyx + slope_x * uy, lyy + slope_y * uy
         points.velocity.x[p] += ax
         points.velocity.y[p] += ay
         points.position.x[p] += dt * vx

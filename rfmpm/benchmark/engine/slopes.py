@@ -22,7 +22,7 @@ RESIDUAL = 12.0  # [kPa]: the slope that slides once and stays in one piece, so 
 SAMPLE, QUIET, REST_SHARE = 0.25, 1.0, 1e-3  # [s], [s], of the largest kinetic energy: at rest
 TITLES = {"slope": "Short slope, run-out", "bars": "Aluminium bars, final surface"}
 ERRORS = {
-    "slope": {"run_out": "difference of the run-out from the extrapolated one [1]"},
+    "slope": {"run_out": "difference of the run-out from the extrapolated one [m]"},
     "bars": {"surface": "error of the surface, root mean square [m]"},
 }
 
@@ -112,4 +112,4 @@ def extrapolate(cells: list[float], values: list[float]) -> tuple[float, float]:
 
 def with_errors(measured: list[tuple[Measurement, float]], limit: float) -> list[Measurement]:
     """Give the measurements of the slope their error against a limit [m]."""
-    return [replace(one, errors={"run_out": abs(value / limit - 1.0)}) for one, value in measured]
+    return [replace(one, errors={"run_out": abs(value - limit)}) for one, value in measured]

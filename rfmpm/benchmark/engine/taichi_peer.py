@@ -104,7 +104,12 @@ def build(scene: Any, law: Any, dt: float) -> Any:
                     g = (tau - cohesion) / shear
                 scale = cohesion / tau
                 strained[p] += g * ti.sqrt(1.0 / 3.0)
-            stress[p] = [mean + scale * (sxx - mean), mean + scale * (syy - mean), mean + scale * (szz - mean), scale * sxy]
+            stress[p] = [
+                mean + scale * (sxx - mean),
+                mean + scale * (syy - mean),
+                mean + scale * (szz - mean),
+                scale * sxy,
+            ]
 
     def advance(steps: int) -> None:
         for _ in range(steps):

@@ -8,7 +8,15 @@ import pytest
 import rfmpm
 from rfmpm.mpm import scene as scenes
 from rfmpm.mpm.solvers import SOLVERS
-from rfmpm.mpm.solvers.reference import ORDERS, Apic, Flip, Settings, Tpic, advance, empty_nodes, still_gradient, wind_up
+from rfmpm.mpm.solvers.reference import (
+    ORDERS,
+    Flip,
+    Settings,
+    advance,
+    empty_nodes,
+    still_gradient,
+    wind_up,
+)
 from rfmpm.mpm.state import start
 
 SHORT_SLOPE = Path(__file__).parents[3] / "configs" / "short_slope.toml"
@@ -45,7 +53,9 @@ def engine_run(scene, time):
     return now, points, history
 
 
-@pytest.mark.parametrize(("shape", "order"), [("quadratic_bspline", "usl"), ("cubic_bspline", "usl"), ("linear", "musl"), ("gimp", "musl")])
+@pytest.mark.parametrize(
+    ("shape", "order"), [("quadratic_bspline", "usl"), ("cubic_bspline", "usl"), ("linear", "musl"), ("gimp", "musl")]
+)
 def test_engine_is_the_plain_solver(shape, order):
     scene = scene_of(shape)
     plain_now, plain, plain_history = plain_run(scene, Flip(2), order, TIME)

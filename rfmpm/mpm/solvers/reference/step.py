@@ -39,7 +39,11 @@ def step(now, points, carried, law, history, axes, nodes, walls, transfer, order
         strain(points, law, history, axes, nodes.straining, dt)
     map_force(points, axes, nodes.force, body_force, now.time)
     solve(nodes, walls, settings.gravity, dt)
-    if filter_terms(transfer) > 0 and now.step_count % settings.filter_interval == 0 and settings.dissipation_time < inf:
+    if (
+        filter_terms(transfer) > 0
+        and now.step_count % settings.filter_interval == 0
+        and settings.dissipation_time < inf
+    ):
         blend, since = 1.0, 0.0
         if settings.dissipation_time > 0.0:
             blend = 1.0 - exp(-(now.since_filter + dt) / settings.dissipation_time)
