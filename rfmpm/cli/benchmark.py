@@ -15,6 +15,15 @@ ReportFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder
 Quick = Annotated[bool, typer.Option("--quick", help="A few cases only: a look at the machinery.")]
 
 
+@benchmark.command("engine")
+@ends_in_words
+def engine(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:
+    """Run time against error of every shape with every transfer: run_time_against_error.md and its pictures."""
+    from rfmpm.benchmark.engine.document import run
+
+    typer.echo(run(out, quick, typer.echo))
+
+
 @benchmark.command("stability")
 @ends_in_words
 def stability(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:

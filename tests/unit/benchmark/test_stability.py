@@ -14,7 +14,12 @@ from rfmpm.benchmark.stability.pictures import draw_overview, draw_sweep, places
 from rfmpm.benchmark.stability.sweeps import all_sweeps
 from rfmpm.study import StudyError
 
-SHORT = {"discretisation.cell_m": 1.0, "material.0.softening_length_m": 1.0, "time.end_s": 0.5, "material.0.cohesion_kpa": 30.0}
+SHORT = {
+    "discretisation.cell_m": 1.0,
+    "material.0.softening_length_m": 1.0,
+    "time.end_s": 0.5,
+    "material.0.cohesion_kpa": 30.0,
+}
 UNHEARD = Case("a", "b", {"time.step_fraction": 1.1}, refusal="time.step_fraction")
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rfmpm.benchmark import vortex
+from rfmpm.benchmark.engine import vortex
 
 AMPLITUDE, STEP = 1.3, 1e-4
 FORCE = vortex.Vortex(AMPLITUDE, vortex.DURATION, vortex.SHEAR / vortex.DENSITY, 0.0)
@@ -75,7 +75,7 @@ def test_rest_of_the_body_feels_no_force():
 
 
 def test_initial_velocity_is_that_of_the_motion():
-    from rfmpm.benchmark.schemes import Scheme
+    from rfmpm.benchmark.engine.schemes import Scheme
 
     scene, start = vortex._scene(Scheme("quadratic_bspline"), 26, 0.1, AMPLITUDE)
     expected = np.array([velocity(*one, 0.0) for one in start])

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from rfmpm.benchmark.blocks import elastic_block
-from rfmpm.benchmark.runs import Measurement, Run, timed
-from rfmpm.benchmark.schemes import Scheme
+from rfmpm.benchmark.engine.blocks import elastic_block
+from rfmpm.benchmark.engine.runs import Measurement, Run, timed
+from rfmpm.benchmark.engine.schemes import Scheme
 from rfmpm.kernel_tools import Tensor, Vector
 from rfmpm.mpm import scene as scenes
 

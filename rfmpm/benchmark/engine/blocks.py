@@ -18,7 +18,12 @@ def elastic_block(
     return Study(
         study={"name": "block", "seed": 0},
         geometry={"kind": "block", "width_m": width, "height_m": height, "foreland_m": 0.0},
-        discretisation={"cell_m": cell, "points_per_cell": points_per_cell, "shape": shape},
+        discretisation={
+            "cell_m": cell,
+            "points_per_cell": points_per_cell,
+            "shape": shape,
+            "volumetric_strain": "point",
+        },
         boundary={"base": {"kind": "roller"}, "sides": {"kind": "roller"}},
         material=[
             {

@@ -10,9 +10,9 @@ from math import cos, pi
 
 import numpy as np
 
-from rfmpm.benchmark.blocks import elastic_block
-from rfmpm.benchmark.runs import Measurement, Run, timed
-from rfmpm.benchmark.schemes import Scheme
+from rfmpm.benchmark.engine.blocks import elastic_block
+from rfmpm.benchmark.engine.runs import Measurement, Run, timed
+from rfmpm.benchmark.engine.schemes import Scheme
 from rfmpm.kernel_tools import Tensor
 from rfmpm.mpm import scene as scenes
 

@@ -1,0 +1,1 @@
+"""Run time against error: every shape with every transfer, on scenes whose answer is known."""
