@@ -194,7 +194,7 @@ def no_history(bench: Bench) -> Saving:
     scene = replace(bench.plain.scene, material=law)
 
     def steps(is_bare: bool):
-        own = scenes.release(scene, None)
+        own = scenes.release(scene, None)._replace(averaging=None)
         if is_bare:
             own = own._replace(law=PerfectlyPlastic(own.law.lame, own.law.shear, 10e3), history=None)
         advance(start(), 2.0, *scenes.arguments(scene, own))

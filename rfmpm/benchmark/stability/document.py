@@ -19,12 +19,12 @@ A run is *done* when it came to rest or to its end and a look at its points find
 every volume positive, every point inside the domain and slower than twice a fall from its top, every stress inside the
 yield surface (the law answers no strain with no change of stress). The number is the energy that does not close, and
 what the numerics added if they added any, as a share of gravity's work, or of the elastic energy at the start where
-that is more: closed is up to {100 * CLOSED:g} %, and more than {100 * TOO_FAR_OPEN:g} % is a failure. A run is *stopped for the right reason* when
-the engine ended it itself and a run that follows its advice (a quarter of the step, or a longer foreland) ends well. It
-is *refused in the right words* when the study is not accepted and the message names the key. Everything else, a crash
-of the process and a run without end included, is a failure. Every run goes on in a process of its own.
-
-The scene is the slope of the main study on cells of 0.5 m, changed as the tables say."""
+that is more: closed is up to {100 * CLOSED:g} %, and more than {100 * TOO_FAR_OPEN:g} % is a failure. A run is
+*stopped for the right reason* when the engine ended it itself and a run that follows its advice (a quarter of the step,
+or a longer foreland) ends well. It is *refused in the right words* when the study is not accepted and the message names
+the key. Everything else, a crash of the process and a run without end included, is a failure. Every run goes on in a
+process of its own.
+"""
 
 
 def run(folder: Path, quick: bool, tell: Callable[[str], None]) -> Path:

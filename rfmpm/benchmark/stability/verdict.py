@@ -113,22 +113,28 @@ def faults(outcome: Outcome, prepared: Prepared) -> list[str]:
 
 
 def yield_excess(outcome: Outcome, prepared: Prepared) -> float:
-    """How far the stresses lie outside the yield surface: the law's answer to no strain at all.
+    """How far the stresses lie outside the yield surface: the law's answer to no strain and no viscosity at all.
+
+    What viscosity may hold beyond it, at the fastest shear that the points' speeds allow over a cell, is taken off.
 
     Returns:
         The largest change of stress of any point over the size of its stress [-]; 0 inside the surface.
     """
     points = outcome.points
     own = release(prepared.scene, points["cohesion"])
-    law, history = own.law, own.history
+    law, history, held = own.law, own.history, 0.0
+    if getattr(law, "viscosity", 0.0) > 0.0:
+        speed = np.hypot(points["velocity_x"], points["velocity_y"]).max()
+        held = law.viscosity * 2.0 * speed / prepared.scene.cell
+        law = law._replace(viscosity=0.0)
     if history is not None:
         history = history._replace(plastic_strain=points["plastic_strain"])
     stress = Tensor(*(points[f"stress_{name}"] for name in Tensor._fields))
     worst, none = 0.0, Tensor(0.0, 0.0, 0.0, 0.0)
     for p in range(len(points["x"])):
         old = at(stress, p)
-        new, _ = update_stress(at(law, p), old, none, at(history, p), 0.0)  # no time: what viscosity holds stays
-        change = sqrt(sum((a - b) ** 2 for a, b in zip(old, new, strict=True)))
+        new, _ = update_stress(at(law, p), old, none, at(history, p), inf)
+        change = max(0.0, sqrt(sum((a - b) ** 2 for a, b in zip(old, new, strict=True))) - sqrt(2.0) * held)
         size = sqrt(sum(a * a for a in old))
         worst = max(worst, change / size if size > 0.0 else 0.0 if change == 0.0 else inf)
     return worst
