@@ -99,8 +99,8 @@ def main() -> None:
     study = rfmpm.load_study(ROOT / "configs" / "papers" / "vardon_2017_short_slope.toml")
     text = f"""# The short slope of Vardon, Wang and Hicks (2017)
 
-Made by `{COMMAND}`. Homogeneous slope of `configs/papers/vardon_2017_short_slope.toml`, softening scaled with the cell, cells of
-{study.discretisation.cell_m:g} m, peak cohesion 20 kPa, base friction 0.3.
+Made by `{COMMAND}`. Homogeneous slope of `configs/papers/vardon_2017_short_slope.toml`, softening scaled with the
+cell, cells of {study.discretisation.cell_m:g} m, peak cohesion 20 kPa, base friction 0.3.
 
 ## Five runs
 
