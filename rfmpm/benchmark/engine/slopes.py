@@ -96,15 +96,16 @@ def _final(run: Run, study: Study):
 
 
 def extrapolate(cells: list[float], values: list[float]) -> tuple[float, float]:
-    """Richardson: the value on cells of no size from three grids, each half as coarse as the one before.
+    """Richardson: the value on cells of no size from the three finest grids, each half as coarse as the one
+    before.
 
     Returns:
         The value, and its uncertainty: how far it is from the finest grid's. Where the differences do not fall, there
         is no order to go by; then the finest value with the last difference.
     """
-    coarse, middle, fine = (value for _, value in sorted(zip(cells, values, strict=True), reverse=True)[:3])
+    coarse, middle, fine = (value for _, value in sorted(zip(cells, values, strict=True), reverse=True)[-3:])
     before, last = middle - coarse, fine - middle
-    if last == 0.0 or not 0.0 < last / before < 0.9:
+    if not 0.0 < last * before < 0.9 * before**2:
         return fine, abs(last)
     limit = fine + last / (before / last - 1.0)
     return limit, abs(limit - fine)
