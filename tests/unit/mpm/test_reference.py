@@ -172,8 +172,16 @@ def test_body_force_that_is_gravity_is_gravity():
 def test_point_that_leaves_the_grid_is_named():
     scene = flight()
     fast = scene.points._replace(
-        velocity=Vector(scene.points.velocity.x, scene.points.velocity.y + 100.0)
+        velocity=Vector(scene.points.velocity.x, scene.points.velocity.y + 50.0)
     )  # the top is open
     now, points, _ = plain_run(replace(scene, points=fast), Flip(2), "usl", 1.0)
     assert now.time < 1.0
     assert points.position.y[now.lost] > 2.5
+
+
+def test_point_far_faster_than_waves_has_blown_up():
+    scene = flight()
+    fast = scene.points._replace(velocity=Vector(scene.points.velocity.x, scene.points.velocity.y + 1e3))
+    now, _, _ = plain_run(replace(scene, points=fast), Flip(2), "usl", 1.0)
+    assert now.step_count == 1
+    assert now.lost >= 0
