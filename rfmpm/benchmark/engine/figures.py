@@ -11,7 +11,7 @@ from rfmpm.report.style import BLUE, DOTS_PER_INCH, GREY, ORANGE, VERMILION, dra
 
 COLOURS = dict(zip(SHAPE_LABELS, (GREY, ORANGE, BLUE, VERMILION), strict=True))
 MARKERS = dict(zip(TRANSFER_LABELS, "oDsPXv^", strict=True))
-WIDTH, PANEL = 10.5, 4.6  # inches
+WIDTH, PANEL = 11.0, 5.2  # inches
 
 
 def shown(measured: Sequence[Measurement], error: str) -> list[Measurement]:
@@ -40,14 +40,18 @@ def draw(measured: Sequence[Measurement], title: str, errors: dict[str, str], pa
     """
     with drawing():
         figure = new_figure(WIDTH, PANEL * len(errors) + 0.3)
-        panels = figure.subplots(len(errors), 2, squeeze=False, width_ratios=(2.1, 1.0))
+        panels = figure.subplots(len(errors), 2, squeeze=False, width_ratios=(1.9, 1.0))
         for (name, label), (axes, side) in zip(errors.items(), panels, strict=True):
-            _panel(axes, side, measured, name, label)
+            lines = _panel(axes, measured, name, label)
+            side.axis("off")
+            side.text(0.0, 0.0, "\n".join(lines), fontsize=7.0, va="bottom", transform=side.transAxes)
+        _legend(panels[0][1], {one.scheme.transfer for one in measured})
         panels[0][0].set_title(title)
         figure.savefig(path, dpi=DOTS_PER_INCH)
 
 
-def _panel(axes, side, measured, name, label) -> None:
+def _panel(axes, measured, name, label) -> list[str]:
+    """Draw one error. Returns what the marks on its fronts stand for."""
     series = defaultdict(list)
     for one in shown(measured, name):
         series[one.scheme].append(one)
@@ -79,13 +83,12 @@ def _panel(axes, side, measured, name, label) -> None:
                 fontsize=8.5, fontweight="bold",
             )  # fmt: skip
             lines.append(f"{mark}  {one.scheme.label}, h = {one.cell:.3g} m")
-    _legend(axes, side, lines, {one.scheme.transfer for one in measured})
+    return lines
 
 
-def _legend(axes, side, lines, transfers) -> None:
+def _legend(side, transfers) -> None:
     from matplotlib.lines import Line2D
 
-    side.axis("off")
     handles = [Line2D([], [], color=colour, label=SHAPE_LABELS[shape]) for shape, colour in COLOURS.items()]
     handles += [
         Line2D([], [], color="black", marker=MARKERS[name], linestyle="", markerfacecolor="white", label=label)
@@ -99,4 +102,3 @@ def _legend(axes, side, lines, transfers) -> None:
         Line2D([], [], color="black", linestyle="--", label="front of the plain solver"),
     ]
     side.legend(handles=handles, loc="upper left", fontsize=7.5, borderaxespad=0.0)
-    side.text(0.0, 0.0, "\n".join(lines), fontsize=6.3, va="bottom", transform=side.transAxes)

@@ -7,7 +7,7 @@ from rfmpm.benchmark.engine import bar, column, slopes, vortex
 from rfmpm.benchmark.engine.runs import Measurement
 from rfmpm.benchmark.engine.schemes import Scheme, defaults, engine_schemes, orders, own_order, transfers
 
-REPEATS = 5
+REPEATS = 2
 QUICK = [Scheme("quadratic_bspline"), Scheme("quadratic_bspline", engine="fast")]
 
 
@@ -34,8 +34,10 @@ def bar_runs(quick: bool) -> Iterator[Measurement]:
         yield from (bar.measure(scheme, cells, 1, periods=3) for scheme in QUICK for cells in (4, 8))
         return
     for scheme in [*transfers(), *orders(), *_more_points(), *engine_schemes()]:
-        for cells in (8, 16, 32):
+        for cells in (8, 16):
             yield bar.measure(scheme, cells, REPEATS)
+    for scheme in [*defaults(), *engine_schemes()]:
+        yield bar.measure(scheme, 32, REPEATS)
 
 
 def vortex_runs(quick: bool) -> Iterator[Measurement]:
@@ -44,12 +46,10 @@ def vortex_runs(quick: bool) -> Iterator[Measurement]:
         plain = [scheme for scheme in QUICK if scheme.engine == "plain"]
         yield from (vortex.measure(scheme, 13, 1, end=0.05) for scheme in plain)
         return
-    for scheme in [*transfers(), *orders(), *_more_points()]:
+    for scheme in [*transfers(), *orders()]:
         for cells in (26, 52):
             yield vortex.measure(scheme, cells, REPEATS)
-    quadratic = [scheme for scheme in transfers() if scheme.shape == "quadratic_bspline"]
-    others = [scheme for scheme in defaults() if scheme.shape != "quadratic_bspline"]
-    for scheme in [*quadratic, *others]:
+    for scheme in defaults():
         yield vortex.measure(scheme, 104, REPEATS)
     yield vortex.measure(Scheme("quadratic_bspline"), 208, REPEATS)
 
@@ -85,7 +85,7 @@ def bars_runs(quick: bool) -> Iterator[Measurement]:
         return
     plain = [scheme for scheme in transfers() if scheme.shape == "quadratic_bspline"]
     for scheme in [*engine_schemes(), *plain]:
-        for cell in (0.01, 0.005):
+        for cell in (0.02, 0.01, 0.005) if scheme.engine == "fast" else (0.01,):
             yield slopes.measure_bars(study, scheme, cell, 1)
 
 

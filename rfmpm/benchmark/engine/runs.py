@@ -54,9 +54,11 @@ class Run:
             self.next_average = scene.controls.average_interval
             self.now = wind_up(self.points, self.law, self.history, scene.axes, self.grid)
         else:
-            # Neither rest nor its own judgement of the energy ends a run that is to be compared.
+            # Rest does not end a run that is to be compared, nor energy that a scene starts with; a blow-up does.
             self.controls = controls._replace(
-                rest_time=inf, energy_scale=inf, second_mapping=True if self.order == "musl" else None
+                rest_time=inf,
+                energy_scale=float(self.points.mass.sum()) * controls.wave_speed**2,
+                second_mapping=True if self.order == "musl" else None,
             )
             self.now = start()
 

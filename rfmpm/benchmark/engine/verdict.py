@@ -2,7 +2,7 @@
 
 HEAD = """# Run time against error
 
-Made by `rfmpm benchmark engine` on the machine it describes. CPU time is that of the process, the least of up to five
+Made by `rfmpm benchmark engine` on the machine it describes. CPU time is that of the process, the least of two
 repeats, compilation excluded; every run takes half of its critical step. All measurements are in [{table}]({table}).
 
 Two codes run the same scenes. The *plain solver* (`rfmpm/mpm/solvers/reference`) does any shape, transfer and order in

@@ -107,8 +107,8 @@ def turn(stress, f):
 
 
 @kernel
-def move(points, axes, velocity, dt):
-    """x <- x + dt sum w v. Returns the largest speed of a point [m/s], and one that left the grid, or -1."""
+def move(points, axes, velocity, dt, limit):
+    """x <- x + dt sum w v. Returns the largest speed [m/s], and a point that left the grid or its senses, or -1."""
     fastest = 0.0
     length, height = axes.x.cells / axes.x.inverse_cell, axes.y.cells / axes.y.inverse_cell
     for p in range(points.mass.size):
@@ -119,5 +119,8 @@ def move(points, axes, velocity, dt):
         if not (0.0 <= place.x <= length and 0.0 <= place.y <= height):
             return fastest, p
         put(points.position, p, place)
-        fastest = max(fastest, hypot(points.velocity.x[p], points.velocity.y[p]))
+        speed = hypot(points.velocity.x[p], points.velocity.y[p])
+        if not speed <= limit:
+            return fastest, p
+        fastest = max(fastest, speed)
     return fastest, -1

@@ -52,7 +52,7 @@ class Clock(NamedTuple):
     step_count: int
     since_filter: float  # time since the filter last acted [s]
     fastest: float  # largest point speed [m/s]
-    lost: int  # point that left the grid or is no number, or -1
+    lost: int  # point that left the grid, is no number or blew up, or -1
 
 
 def empty_nodes(axes: Axes) -> Nodes:

@@ -17,6 +17,8 @@ from rfmpm.mpm.solvers.reference.points import (
 from rfmpm.mpm.solvers.reference.protocols import filter_terms
 from rfmpm.mpm.solvers.reference.state import SECOND_MAPPING, STRESS_FIRST, STRESS_LAST, Clock
 
+SENSELESS = 10.0  # times the wave speed: a point as fast as that has blown up, and would make ever smaller steps
+
 
 def wind_up(points, law, history, axes, nodes):
     """Let what starts beyond its strength yield. Returns the clock of a run that has not begun; arguments as below."""
@@ -59,7 +61,7 @@ def step(now, points, carried, law, history, axes, nodes, walls, transfer, order
         hold_where_held(nodes.straining, nodes.velocity)
     if order != STRESS_FIRST:
         strain(points, law, history, axes, nodes.straining, dt)
-    fastest, lost = move(points, axes, nodes.velocity, dt)
+    fastest, lost = move(points, axes, nodes.velocity, dt, SENSELESS * settings.wave_speed)
     return Clock(now.time + dt, now.step_count + 1, since, fastest, lost)
 
 
