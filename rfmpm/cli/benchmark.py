@@ -49,3 +49,12 @@ def slope(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:
     from rfmpm.benchmark.slope_error import CELLS, QUICK_CELLS, write
 
     typer.echo(write(out, QUICK_CELLS if quick else CELLS, typer.echo))
+
+
+@benchmark.command("verification")
+@ends_in_words
+def verification(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:
+    """Compare the engine with exact and measured answers: verification.md."""
+    from rfmpm.benchmark.verification import write
+
+    typer.echo(write(out, quick, typer.echo))
