@@ -20,7 +20,6 @@ from rfmpm.study import Study
 RESIDUALS = (4.0, 8.0, 12.0)  # [kPa]
 FRACTIONS = (0.1, 0.2, 0.4, 0.8)
 CELLS = (0.5, 0.25, 0.125, 0.0625)  # [m]
-QUICK_CELLS = (0.5, 0.25, 0.125)  # [m], for a slope of a tenth of the time
 QUANTITIES = {"run_out": "m", "retrogression_distance": "m", "failure_volume": "m3/m"}
 END = 20.0  # [s]
 SOFTENING = {
@@ -115,10 +114,7 @@ def constant_rows(study: Any) -> Iterator[str]:
         for label, factors in CONSTANTS.items():
             result = run(study, with_controls(**factors), material__0__residual_cohesion_kpa=residual)
             base = base or result
-            cells = [
-                f"{value:.3f} ({100 * (value / base.values[name] - 1.0):+.2f} %)"
-                for name, value in result.values.items()
-            ]
+            cells = [f"{value:.3f} ({_off(value, base.values[name], 2)})" for name, value in result.values.items()]
             yield f"| {residual:g} | {label} | " + " | ".join(cells) + " |"
 
 
@@ -138,8 +134,8 @@ def cell_rows(study: Any, cells=CELLS) -> Iterator[str]:
             listed = " | ".join(f"{value:.2f}" for value in values)
             order = f"{limit.order:.1f}" if np.isfinite(limit.order) else "none"
             yield (
-                f"| {residual:g} | {_label(name, unit)} | {listed} | {100 * (values[-1] / values[-2] - 1.0):+.1f} % "
-                f"| {limit.value:.2f} ± {limit.band:.2f} | {order} | {100 * (values[1] / limit.value - 1.0):+.1f} % |"
+                f"| {residual:g} | {_label(name, unit)} | {listed} | {_off(values[-1], values[-2])} "
+                f"| {limit.value:.2f} ± {limit.band:.2f} | {order} | {_off(values[1], limit.value)} |"
             )
         for label, numbers in (
             ("numerical dissipation", [f"{100 * result.share:.2f} %" for result in results]),
@@ -162,7 +158,12 @@ def softening_rows(study: Any, cells=CELLS) -> Iterator[str]:
         for name, unit in QUANTITIES.items():
             values = [result.values[name] for result in results]
             listed = " | ".join(f"{value:.2f}" for value in values)
-            yield f"| {label} | {_label(name, unit)} | {listed} | {100 * (values[-1] / values[-2] - 1.0):+.1f} % |"
+            yield f"| {label} | {_label(name, unit)} | {listed} | {_off(values[-1], values[-2])} |"
+
+
+def _off(value: float, reference: float, digits: int = 1) -> str:
+    """By how much a value is off, in per cent of the reference; nothing where that is zero."""
+    return f"{100.0 * (value / reference - 1.0):+.{digits}f} %" if reference else ""
 
 
 def _label(name: str, unit: str) -> str:
@@ -170,28 +171,28 @@ def _label(name: str, unit: str) -> str:
 
 
 def _row(head: str, name: str, unit: str, values: list[float]) -> str:
-    span = 100 * np.ptp(values) / np.mean(values)
+    span = 100 * np.ptp(values) / max(np.mean(values), 1e-300)
     return f"| {head} | {_label(name, unit)} | " + " | ".join(f"{v:.3f}" for v in values) + f" | {span:.2f} % |"
 
 
-def slope() -> Study:
-    """The homogeneous short slope; the same as in configs/short_slope.toml."""
-    return Study(**deepcopy(SLOPE)).with_changes({"discretisation.cell_m": 0.25, "time.end_s": END})
+def slope(quick: bool) -> Study:
+    """The homogeneous short slope, the same as in configs/short_slope.toml; coarse and for a second where quick."""
+    cell, end = (CELLS[0], 1.0) if quick else (CELLS[1], END)
+    return Study(**deepcopy(SLOPE)).with_changes({"discretisation.cell_m": cell, "time.end_s": end})
 
 
-def write(folder: Path, cells, tell: Callable[[str], None], end: float = END) -> Path:
+def write(folder: Path, quick: bool, tell: Callable[[str], None]) -> Path:
     """Run everything and write the report.
 
     Args:
         folder: where the report goes; made if missing.
-        cells: cell sizes, from the coarsest, each half the one before, at least three [m].
+        quick: coarse cells and a short time: a look at the machinery, whose figures mean nothing.
         tell: is told the progress, line by line.
-        end: model time at which a run ends at the latest [s].
 
     Returns:
         The report's path.
     """
-    study = slope().with_changes({"time.end_s": end})
+    study, cells = slope(quick), CELLS[:3] if quick else CELLS
     tables = {
         "steps": time_step_rows(study),
         "constants": constant_rows(study),
@@ -201,7 +202,8 @@ def write(folder: Path, cells, tell: Callable[[str], None], end: float = END) ->
     texts = {name: "\n".join(_told(rows, tell)) for name, rows in tables.items()}
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "slope_error.md"
-    path.write_text(TEXT.format(cell=study.discretisation.cell_m, end=end, **texts), encoding="utf-8")
+    text = TEXT.format(cell=study.discretisation.cell_m, end=study.time.end_s, **texts)
+    path.write_text(text, encoding="utf-8")
     return path
 
 

@@ -46,9 +46,9 @@ def savings(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:
 @ends_in_words
 def slope(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:
     """Run the short slope over time steps, constants, cells and kinds of softening: slope_error.md."""
-    from rfmpm.benchmark.slope_error import CELLS, QUICK_CELLS, write
+    from rfmpm.benchmark.slope_error import write
 
-    typer.echo(write(out, QUICK_CELLS if quick else CELLS, typer.echo))
+    typer.echo(write(out, quick, typer.echo))
 
 
 @benchmark.command("verification")
