@@ -2,8 +2,8 @@
 
 HEAD = """# Run time against error
 
-Made by `rfmpm benchmark engine` on the machine it describes. CPU time is that of the process, the least of two
-repeats, compilation excluded; every run takes half of its critical step. All measurements are in [{table}]({table}).
+Made by `rfmpm benchmark engine` on the machine it describes. CPU time is that of the process, compilation
+excluded; every run takes half of its critical step. All measurements are in [{table}]({table}).
 
 Two codes run the same scenes. The *plain solver* (`rfmpm/mpm/solvers/reference`) does any shape, transfer and order in
 the same slow way, so its points compare schemes. The *production engine* does what is kept, fast; where both do the
