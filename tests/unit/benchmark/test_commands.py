@@ -15,6 +15,7 @@ FILES = {"slope": "slope_error"}
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1500)  # many kernels to compile
 @pytest.mark.parametrize("name", REPORTS)
 def test_quick_benchmark_writes_its_report(tmp_path, name):
     result = CliRunner().invoke(app, ["benchmark", name, "--quick", "--out", str(tmp_path)])

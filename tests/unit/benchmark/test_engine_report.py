@@ -31,6 +31,7 @@ def test_ranking_is_over_the_default_on_the_same_cells():
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1500)  # it compiles every shape with every transfer
 def test_quick_run_writes_report_pictures_and_table(tmp_path):
     done = CliRunner().invoke(app, ["benchmark", "engine", "--quick", "--out", str(tmp_path)])
     assert done.exit_code == 0, done.output
