@@ -438,7 +438,8 @@ def test_softening_has_a_length_or_a_reference_cell_but_not_both(study):
 
 def test_softening_over_a_length_may_be_steeper_than_the_unloading(study):
     # Within a step the strength stays as it is, so that no stress has to be found on a line that snaps back.
-    study.with_changes({"material.0.softening_modulus_kpa": 1e4})
+    steep = study.with_changes({"material.0.softening_modulus_kpa": 1e4})
+    assert steep.material[0].softening_modulus_kpa == 1e4
 
 
 def test_field_needs_a_material_with_a_cohesion(study):

@@ -15,7 +15,8 @@ VERDICT = """## What is kept, what is dropped
 The production engine keeps one transfer, FLIP with a slow relaxation towards FMPM(2), and four shapes.
 
 - PIC and FMPM in each step dissipate per step: they damp the swinging bar within a few periods and hold the slope back
-  by more than a metre (PIC). APIC and TPIC serve the bar well and hold back the slope. They are left to the plain solver.
+  by more than a metre (PIC). APIC and TPIC serve the bar well and hold back the slope. All are left to the
+  plain solver.
 - FLIP without a filter is as close as with it where nothing jitters for long; the filter costs a few per cent and is
   what brings a slope to rest.
 - Linear shapes have the least error of the bar, where points stay in their cells, and do not converge in the column,
