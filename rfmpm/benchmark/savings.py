@@ -110,7 +110,7 @@ def untouched_cells(bench: Bench) -> Saving:
 
     def sweep(box):
         for _ in range(CALLS):
-            update_grid(grid, scene.walls, box, 0.0, 0.0, 1e-9)
+            update_grid(grid, scene.walls, box, 0.0, 0.0, 0.0, 1e-9)
             clear(grid.sums, box)
             clear(grid.parts, box)
 

@@ -1,7 +1,7 @@
 """A scene: everything that realisations of one study share, and what one of them starts from."""
 
 from dataclasses import dataclass
-from math import inf, sqrt
+from math import inf, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -72,15 +72,15 @@ def build(study) -> Scene:
         gravity=GRAVITY,
         cell=cell,
         wave_speed=sqrt((lame + 2.0 * shear) / density),
-        courant=study.time.step_fraction * axes.x.COURANT,
+        courant=study.time.step_fraction,
         dissipation_time=study.discretisation.dissipation_time_s,
         filter_interval=FILTER_INTERVAL,
         average_interval=AVERAGE_SHARE * length / sqrt(shear / density) if length else inf,
         rest_fraction=REST_FRACTION,
         rest_time=REST_TIME,
+        settling_rate=0.0 if material.law == "elastic" else pi * sqrt(shear / density) / shape.outline[:, 1].max(),
         energy_scale=elastic_energy(points, lame, shear),
         growth_limit=GROWTH_LIMIT,
-        second_mapping=axes.x.SECOND_MAPPING,
     )
     return Scene(shape, cell, points, axes, walls, controls, material, lame, shear, averaged)
 

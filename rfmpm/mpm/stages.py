@@ -27,7 +27,7 @@ from rfmpm.kernel_tools import (
     scatter_slopes,
 )
 from rfmpm.mpm.protocols import update_stress, weights
-from rfmpm.mpm.state import CHANGE_X, CHANGE_Y, FORCE_X, FORCE_Y, X, Y
+from rfmpm.mpm.state import CHANGE_X, CHANGE_Y, FORCE_X, FORCE_Y, MOVING_X, MOVING_Y, X, Y
 
 XX, XY, YX, YY = range(4)
 
@@ -37,7 +37,7 @@ class Scratch(NamedTuple):
 
     x: Stencil
     y: Stencil
-    motion: np.ndarray  # grid velocity x y, its change x y (MUSL: straining velocity, grid velocity) [m/s]
+    motion: np.ndarray  # grid velocity x y and its change x y, or straining velocity x y and grid velocity x y [m/s]
     smooth: np.ndarray  # filtered velocity x y [m/s]
     gradient: np.ndarray  # of the velocity: xx, xy, yx, yy [1/s]
 
@@ -81,12 +81,12 @@ def interpolate(values, scratch, count, out):
 
 
 @kernel
-def interpolate_slopes(values, scratch, count):
-    """Grid to point: the four values of the nodes and the gradient of the first two."""
+def interpolate_slopes(values, scratch, count, gradient):
+    """Grid to point: the four values of the nodes, into `motion`, and the gradient of the first two."""
     for p in range(count):
         value, along_x, along_y = gather_slopes(values, scratch.x, scratch.y, p)
         put_lanes(scratch.motion, p, value)
-        put_lanes(scratch.gradient, p, (along_x[X], along_y[X], along_x[Y], along_y[Y]))
+        put_lanes(gradient, p, (along_x[X], along_y[X], along_x[Y], along_y[Y]))
 
 
 @kernel
@@ -100,18 +100,18 @@ def accelerate(velocity, motion, smooth, blend):
 
 
 @kernel
-def move(points, axes, motion, lane, dt, tally):
-    """Move the points with the velocity in `motion`, from value `lane` on. Returns the number of points outside."""
+def move(points, axes, motion, dt, tally):
+    """Move the points with the grid's velocity, the last two values in `motion`. Returns the number of points outside."""
     length, height = axes.x.cells / axes.x.inverse_cell, axes.y.cells / axes.y.inverse_cell
     outside = 0
     for p in range(points.mass.size):
         mass, vx, vy = points.mass[p], points.velocity.x[p], points.velocity.y[p]
         speed = vx * vx + vy * vy
+        right, up = dt * motion[4 * p + MOVING_X], dt * motion[4 * p + MOVING_Y]
         tally.kinetic[p] += 0.5 * mass * speed
-        tally.fall[p] -= mass * dt * motion[4 * p + lane + Y]
+        tally.fall[p] -= mass * up
         tally.fastest[p] = max(tally.fastest[p], speed)
-        x = points.position.x[p] + dt * motion[4 * p + lane + X]
-        y = points.position.y[p] + dt * motion[4 * p + lane + Y]
+        x, y = points.position.x[p] + right, points.position.y[p] + up
         points.position.x[p], points.position.y[p] = x, y
         outside += not ((x >= 0.0) & (x <= length) & (y >= 0.0) & (y <= height))
     return outside

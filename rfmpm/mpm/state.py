@@ -25,11 +25,12 @@ class Grid(NamedTuple):
     flow: np.ndarray  # (rows, columns, 4): velocity x y, its change over the step x y [m/s]
     filtered: np.ndarray  # (rows, columns, 4): momentum of the second projection x y, then FMPM's velocity x y [m/s]
     parts: np.ndarray  # (rows, columns, 4): mass [kg/m] of the nodes i, i + 1, ... from points whose first is i
-    straining: np.ndarray  # (rows, columns, 4): momentum of the updated points; then MUSL's velocity, the grid's
+    straining: np.ndarray  # (rows, columns, 4): momentum of the updated points; then their velocity x y, the grid's x y
 
 
 X, Y, FORCE_X, FORCE_Y = range(4)
 CHANGE_X, CHANGE_Y = 2, 3
+MOVING_X, MOVING_Y = 2, 3
 
 
 class Axes(NamedTuple):
@@ -48,6 +49,8 @@ class Progress(NamedTuple):
     kinetic: float  # kinetic energy of the points [J/m]
     peak_kinetic: float  # the largest so far [J/m]
     quiet_time: float  # how long the kinetic energy has been small [s]
+    calm_time: float  # how long next to nothing has flowed, slid or flown [s]
+    flow_before: float  # plastic work and work of friction when that began [J/m]
     since_filter: float  # time since the filter last acted [s]
     since_average: float  # time since the softening was last averaged [s]
     fastest: float  # largest point speed [m/s]
@@ -75,6 +78,8 @@ def start() -> Progress:
         kinetic=0.0,
         peak_kinetic=0.0,
         quiet_time=0.0,
+        calm_time=0.0,
+        flow_before=0.0,
         since_filter=0.0,
         since_average=0.0,
         fastest=0.0,

@@ -16,9 +16,7 @@ class CubicBSpline(NamedTuple):
     never negative, with second derivatives that vanish on the wall and go on into the spline of the second cell.
     """
 
-    COURANT = 1.0  # wave speed times critical time step over cell: an elastic block is stable at 1.0, not at 1.1
     FEWEST_CELLS = 3
-    SECOND_MAPPING = None  # not needed
 
     inverse_cell: float  # [1/m]
     cells: int

@@ -12,9 +12,7 @@ class Gimp(NamedTuple):
     1 - s and s, that meet the wall's own value exactly.
     """
 
-    COURANT = 1.0  # wave speed times critical time step over cell: an elastic block stays stable at this value
     FEWEST_CELLS = 2
-    SECOND_MAPPING = True  # an elastic block in the air blows up without it, at any step
 
     inverse_cell: float  # [1/m]
     cells: int

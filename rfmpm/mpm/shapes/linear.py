@@ -8,9 +8,7 @@ import numpy as np
 class Linear(NamedTuple):
     """Two nodes along one axis of `cells` cells between two walls."""
 
-    COURANT = 1.0  # wave speed times critical time step over cell: an elastic block stays stable at this value
     FEWEST_CELLS = 1
-    SECOND_MAPPING = True  # an elastic block in the air blows up without it, at any step
 
     inverse_cell: float  # [1/m]
     cells: int

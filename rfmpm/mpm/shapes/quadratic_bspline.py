@@ -13,9 +13,7 @@ class QuadraticBSpline(NamedTuple):
     wall, so that the wall's own value is met exactly there.
     """
 
-    COURANT = 0.8  # wave speed times critical time step over cell: an elastic block is stable at 0.8, not at 0.9
     FEWEST_CELLS = 2
-    SECOND_MAPPING = None  # not needed
 
     inverse_cell: float  # [1/m]
     cells: int

@@ -1,4 +1,4 @@
-"""Explicit time integration: forward in velocity, backward in position, stress last."""
+"""Explicit time integration: velocities, then stress by the velocities mapped again (MUSL)."""
 
 from math import exp, inf
 from typing import NamedTuple
@@ -10,6 +10,8 @@ from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNI
 from rfmpm.mpm.transfer import carry_points, project_twice, update_velocities
 
 RESOLVED_SHARE = 0.5  # of the square of the Courant number: a node's share of the mass at a wall that a step resolves
+CALM_FLOW = 1e-4  # share of the energy in play that plastic flow and friction may take in a time that counts as calm
+CALM_MOTION = 1e-2  # share of it that may be kinetic
 
 
 class Controls(NamedTuple):
@@ -23,10 +25,10 @@ class Controls(NamedTuple):
     filter_interval: int  # steps from one application of the filter to the next
     average_interval: float  # time from one average of the softening to the next [s]
     rest_fraction: float  # of the largest kinetic energy, below which a scene counts as quiet [-]
-    rest_time: float  # quiet this long is at rest [s]
+    rest_time: float  # quiet this long is at rest; calm this long is left with elastic swinging alone [s]
+    settling_rate: float  # at which that swinging is then damped [1/s]
     energy_scale: float  # elastic energy at the start, when all points are still [J/m]
     growth_limit: float  # energy out of nothing that ends a run, as a share of the scale and of gravity's work [-]
-    second_mapping: bool | None  # True: the grid strains the points after their velocities (MUSL); None: before
 
 
 @kernel
@@ -37,35 +39,32 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
     """
     box = now.first_column, now.last_column, now.first_row, now.last_row
     dt, since_filter, blend, filtering = 0.0, 0.0, 0.0, False
-    gain = friction = 0.0
+    gain = friction = damping = 0.0
+    relaxation = controls.dissipation_time
     if now.last_row >= 0:
         dt = controls.courant * controls.cell / (controls.wave_speed + now.fastest)
         since_filter = now.since_filter + dt
-        filtering = now.step_count % controls.filter_interval == 0 and controls.dissipation_time < inf
-        gain, friction = update_grid(grid, walls, box, controls.gravity, dt, RESOLVED_SHARE * controls.courant**2)
+        filtering = now.step_count % controls.filter_interval == 0 and relaxation < inf
+        if now.calm_time >= controls.rest_time and controls.settling_rate > 0.0:
+            damping = controls.settling_rate
+            relaxation = min(relaxation, 1.0 / damping)
+        share = RESOLVED_SHARE * controls.courant**2
+        gain, friction = update_grid(grid, walls, box, controls.gravity, damping, dt, share)
     if filtering:
-        blend = 1.0 - exp(-since_filter / controls.dissipation_time)
+        blend = 1.0 - exp(-since_filter / relaxation)
         since_filter = 0.0
         clear(grid.filtered, box)
         project_twice(points, axes, grid)
         subtract_second_projection(grid, box)
-    if controls.second_mapping is None:
-        clear(grid.parts, box)
-        clear(grid.sums, box)
-        if filtering:
-            moved = carry_points(points, law, history, axes, grid, cells, grid.filtered, blend, None, dt)
-        else:
-            moved = carry_points(points, law, history, axes, grid, cells, None, blend, None, dt)
+    clear(grid.straining, box)
+    if filtering:
+        update_velocities(points, axes, grid, grid.filtered, blend)
     else:
-        clear(grid.straining, box)
-        if filtering:
-            update_velocities(points, axes, grid, grid.filtered, blend)
-        else:
-            update_velocities(points, axes, grid, None, blend)
-        divide_straining(grid, box)
-        clear(grid.parts, box)
-        clear(grid.sums, box)
-        moved = carry_points(points, law, history, axes, grid, cells, None, blend, grid.straining, dt)
+        update_velocities(points, axes, grid, None, blend)
+    divide_straining(grid, box)
+    clear(grid.parts, box)
+    clear(grid.sums, box)
+    moved = carry_points(points, law, history, axes, grid, cells, dt)
     kinetic, fall, work, plastic, fastest, touched, culprit = moved
     since_average = now.since_average + dt
     if averaging is not None:  # noqa: SIM102  (an argument that is None is pruned here, not within a condition)
@@ -74,11 +73,16 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
             since_average = 0.0
     peak = max(now.peak_kinetic, kinetic)
     quiet = now.quiet_time + dt if kinetic < controls.rest_fraction * peak else 0.0
+    gravity_work, plastic, friction = now.gravity_work + controls.gravity * fall, now.plastic_work + plastic, now.friction_work + friction
+    calm, flow = now.calm_time + dt, now.flow_before
+    in_play = controls.energy_scale + abs(gravity_work)
+    if plastic + friction - flow > CALM_FLOW * in_play or kinetic > CALM_MOTION * in_play:
+        calm, flow = 0.0, plastic + friction
     after = Progress(
-        now.status, now.time + dt, now.step_count + (dt > 0.0), kinetic, peak, quiet, since_filter, since_average,
-        fastest**0.5,
-        now.gravity_work + controls.gravity * fall, now.stress_work + work, now.plastic_work + plastic,
-        now.friction_work + friction, now.grid_gain + gain, touched[0], touched[1], touched[2], touched[3], culprit,
+        now.status, now.time + dt, now.step_count + (dt > 0.0), kinetic, peak, quiet, calm, flow, since_filter,
+        since_average, fastest**0.5,
+        gravity_work, now.stress_work + work, plastic, friction, now.grid_gain + gain,
+        touched[0], touched[1], touched[2], touched[3], culprit,
     )  # fmt: skip
     return judge(after, points, controls)
 
@@ -100,8 +104,8 @@ def judge(now, points, controls):
     elif now.quiet_time >= controls.rest_time:
         status = AT_REST
     return Progress(
-        status, now.time, now.step_count, now.kinetic, now.peak_kinetic, now.quiet_time, now.since_filter,
-        now.since_average, now.fastest,
+        status, now.time, now.step_count, now.kinetic, now.peak_kinetic, now.quiet_time, now.calm_time,
+        now.flow_before, now.since_filter, now.since_average, now.fastest,
         now.gravity_work, now.stress_work, now.plastic_work, now.friction_work, now.grid_gain,
         now.first_column, now.last_column, now.first_row, now.last_row, now.culprit,
     )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from rfmpm.kernel_tools import kernel
 from rfmpm.mpm.protocols import constrain
-from rfmpm.mpm.state import CHANGE_X, CHANGE_Y, FORCE_X, FORCE_Y, X, Y
+from rfmpm.mpm.state import CHANGE_X, CHANGE_Y, FORCE_X, FORCE_Y, MOVING_X, X, Y
 
 
 @kernel
@@ -41,8 +41,8 @@ def inertia(grid, row, column, last_column, share):
 
 
 @kernel
-def update_grid(grid, walls, box, gravity, dt, share):
-    """Solve m dv/dt = f - m g on the touched nodes, within what the walls allow.
+def update_grid(grid, walls, box, gravity, damping, dt, share):
+    """Solve m dv/dt = f - m g - damping m v on the touched nodes, within what the walls allow.
 
     The change of velocity that goes back to the points includes what the walls took of the mapped momentum. `share`: of
     the mass at a wall, see `inertia`.
@@ -50,6 +50,7 @@ def update_grid(grid, walls, box, gravity, dt, share):
     Returns (gain of kinetic energy, work taken by the walls), both [J/m].
     """
     gain = friction = 0.0
+    lost = 1.0 - 1.0 / (1.0 + damping * dt)
     last_column = grid.mass.shape[1] - 1
     for row in range(box[2], box[3] + 1):
         for column in range(box[0], box[1] + 1):
@@ -61,6 +62,7 @@ def update_grid(grid, walls, box, gravity, dt, share):
                 pace = dt * inertia(grid, row, column, last_column, share)
                 push_x = pace * grid.sums[row, column, FORCE_X] * inverse
                 push_y = pace * (grid.sums[row, column, FORCE_Y] * inverse - gravity)
+                push_x, push_y = push_x - lost * (mapped_x + push_x), push_y - lost * (mapped_y + push_y)
                 old_x, old_y, vx, vy = mapped_x, mapped_y, mapped_x + push_x, mapped_y + push_y
                 if row == 0 or column == 0 or column == last_column:
                     old_x, old_y, vx, vy = apply_walls(walls, old_x, old_y, push_x, push_y, row, column, last_column)
@@ -102,7 +104,7 @@ def divide_straining(grid, box):
             for k in range(2):
                 is_free = m > 0.0 and grid.flow[row, column, k] != 0.0
                 grid.straining[row, column, k] = grid.straining[row, column, k] / m if is_free else 0.0
-                grid.straining[row, column, CHANGE_X + k] = grid.flow[row, column, k]
+                grid.straining[row, column, MOVING_X + k] = grid.flow[row, column, k]
 
 
 @kernel
