@@ -101,7 +101,7 @@ def accelerate(velocity, motion, smooth, blend):
 
 @kernel
 def move(points, axes, motion, dt, tally):
-    """Move the points with the grid's velocity, the last two values in `motion`. Returns the number of points outside."""
+    """Move the points with the grid's velocity, the last two of `motion`. Returns the number of points outside."""
     length, height = axes.x.cells / axes.x.inverse_cell, axes.y.cells / axes.y.inverse_cell
     outside = 0
     for p in range(points.mass.size):

@@ -89,7 +89,7 @@ def _ranking(measured: Iterable[Measurement]) -> str:
     """Errors and costs of the plain solver's schemes over those of quadratic B-splines with the default transfer."""
     kept = [one for one in measured if one.scheme.engine == "plain"]
     names = list(dict.fromkeys((one.scene, error) for one in kept for error in one.errors))
-    basis = {(one.scene, one.cell): one for one in kept if one.scheme == plan.default_of("quadratic_bspline")}
+    basis = {(one.scene, one.cell): one for one in kept if one.scheme == Scheme("quadratic_bspline")}
     schemes = list(dict.fromkeys(one.scheme for one in kept))
     lines = [
         "| scheme | " + " | ".join(f"{scene}: {error}" for scene, error in names) + " | CPU time |",

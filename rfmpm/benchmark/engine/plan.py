@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from rfmpm.benchmark.convergence import extrapolate
 from rfmpm.benchmark.engine import bar, column, slopes, vortex
 from rfmpm.benchmark.engine.runs import Measurement
-from rfmpm.benchmark.engine.schemes import Scheme, defaults, engine_schemes, orders, own_order, transfers
+from rfmpm.benchmark.engine.schemes import Scheme, defaults, engine_schemes, orders, transfers
 
 REPEATS = 1
 QUICK = [Scheme("quadratic_bspline"), Scheme("quadratic_bspline", engine="fast")]
@@ -84,8 +84,3 @@ def bars_runs(quick: bool) -> Iterator[Measurement]:
     for scheme in [*engine_schemes(), *plain]:
         for cell in (0.02, 0.01):
             yield slopes.measure_bars(study, scheme, cell, 1)
-
-
-def default_of(shape: str) -> Scheme:
-    """The scheme that others of its shape are compared with."""
-    return Scheme(shape, order=own_order(shape))

@@ -42,7 +42,7 @@ class Scheme:
 
     shape: str
     transfer: str = "flip_fmpm2"
-    order: str = "usl"
+    order: str = "musl"
     points_per_cell: int = 4
     engine: str = "plain"
 
@@ -53,28 +53,23 @@ class Scheme:
         return ", ".join([*words, *([] if self.points_per_cell == 4 else [f"{self.points_per_cell} points"])])
 
 
-def own_order(shape: str) -> str:
-    """The order that a shape is used with: MUSL where it needs one, stress last where not."""
-    return "musl" if SHAPES[shape].SECOND_MAPPING else "usl"
-
-
 def defaults(**changes) -> list[Scheme]:
-    """Every shape with the default transfer, in its own order."""
-    return [replace(Scheme(shape, order=own_order(shape)), **changes) for shape in SHAPES]
+    """Every shape with the default transfer and order."""
+    return [replace(Scheme(shape), **changes) for shape in SHAPES]
 
 
 def transfers() -> list[Scheme]:
-    """Every shape with every transfer, in its own order."""
-    return [Scheme(shape, transfer, own_order(shape)) for shape in SHAPES for transfer in TRANSFERS]
+    """Every shape with every transfer, in the default order."""
+    return [Scheme(shape, transfer) for shape in SHAPES for transfer in TRANSFERS]
 
 
 def orders() -> list[Scheme]:
-    """The default transfer with linear shapes and quadratic B-splines in their other orders."""
+    """The default transfer with linear shapes and quadratic B-splines in the other orders."""
     return [
         Scheme(shape, order=order)
         for shape in ("linear", "quadratic_bspline")
         for order in ORDER_LABELS
-        if order != own_order(shape)
+        if order != Scheme.order
     ]
 
 

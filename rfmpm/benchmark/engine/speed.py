@@ -8,7 +8,7 @@ from math import inf
 from rfmpm.benchmark.engine import taichi_peer
 from rfmpm.benchmark.engine.plain_loop import empty_nodes, three_loops
 from rfmpm.benchmark.engine.runs import Run
-from rfmpm.benchmark.engine.schemes import Scheme, own_order
+from rfmpm.benchmark.engine.schemes import Scheme
 from rfmpm.benchmark.engine.slopes import slope_study
 from rfmpm.mpm import scene as scenes
 from rfmpm.mpm.shapes import SHAPES
@@ -48,10 +48,10 @@ def measure(cell: float, repeats: int, shapes: Iterable[str] = tuple(SHAPES)) ->
     codes = {"three plain loops: linear, FLIP, stress last": _plain(made["linear"])}
     for shape in shapes:
         for transfer in ("flip_fmpm2", "flip"):
-            scheme = Scheme(shape, transfer, own_order(shape), engine="fast")
+            scheme = Scheme(shape, transfer, engine="fast")
             codes[f"production engine: {scheme.label}"] = _run(made[shape], scheme)
     for shape in ("linear", "quadratic_bspline"):
-        scheme = Scheme(shape, order=own_order(shape), engine="fast")
+        scheme = Scheme(shape, engine="fast")
         scene = scenes.build(study.with_changes({"discretisation.shape": shape} | bare))
         codes[f"the same without means over cells and softening length: {scheme.label}"] = _run(scene, scheme)
     for scheme in (Scheme("linear", "flip", "usl"), Scheme("quadratic_bspline")):

@@ -9,6 +9,7 @@ from rfmpm.realisation import Prepared
 from rfmpm.study import Study
 
 CELL = 0.5  # [m]
+STEP_FRACTION = 0.8  # of the critical time step, the default of a study
 
 # The short slope of the main study on coarse cells: a run takes a fraction of a second.
 SLOPE = {
@@ -30,7 +31,7 @@ SLOPE = {
             "viscosity_kpa_s": 0.3,
         }
     ],
-    "time": {"end_s": 20.0},
+    "time": {"end_s": 20.0, "step_fraction": STEP_FRACTION},
     "output": {"directory": "unused"},
 }
 ELASTIC = {

@@ -39,25 +39,22 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
     """
     box = now.first_column, now.last_column, now.first_row, now.last_row
     dt, since_filter, blend, filtering = 0.0, 0.0, 0.0, False
-    gain = friction = damping = 0.0
-    relaxation = controls.dissipation_time
+    gain = friction = 0.0
     if now.last_row >= 0:
         dt = controls.courant * controls.cell / (controls.wave_speed + now.fastest)
-        since_filter = now.since_filter + dt
-        filtering = now.step_count % controls.filter_interval == 0 and relaxation < inf
-        if now.calm_time >= controls.rest_time and controls.settling_rate > 0.0:
-            damping = controls.settling_rate
-            relaxation = min(relaxation, 1.0 / damping)
+        settling = controls.settling_rate if now.calm_time >= controls.rest_time else 0.0
         share = RESOLVED_SHARE * controls.courant**2
-        gain, friction = update_grid(grid, walls, box, controls.gravity, damping, dt, share)
+        gain, friction = update_grid(grid, walls, box, controls.gravity, settling, dt, share)
+        rate = 1.0 / controls.dissipation_time + settling
+        since_filter = now.since_filter + dt
+        filtering = now.step_count % controls.filter_interval == 0 and rate > 0.0
+        blend = 1.0 - exp(-since_filter * rate)
+    clear(grid.straining, box)
     if filtering:
-        blend = 1.0 - exp(-since_filter / relaxation)
         since_filter = 0.0
         clear(grid.filtered, box)
         project_twice(points, axes, grid)
         subtract_second_projection(grid, box)
-    clear(grid.straining, box)
-    if filtering:
         update_velocities(points, axes, grid, grid.filtered, blend)
     else:
         update_velocities(points, axes, grid, None, blend)
@@ -73,18 +70,24 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
             since_average = 0.0
     peak = max(now.peak_kinetic, kinetic)
     quiet = now.quiet_time + dt if kinetic < controls.rest_fraction * peak else 0.0
-    gravity_work, plastic, friction = now.gravity_work + controls.gravity * fall, now.plastic_work + plastic, now.friction_work + friction
-    calm, flow = now.calm_time + dt, now.flow_before
-    in_play = controls.energy_scale + abs(gravity_work)
-    if plastic + friction - flow > CALM_FLOW * in_play or kinetic > CALM_MOTION * in_play:
-        calm, flow = 0.0, plastic + friction
+    calm, flow_before = time_of_calm(now, kinetic, plastic + friction, dt, controls)
     after = Progress(
-        now.status, now.time + dt, now.step_count + (dt > 0.0), kinetic, peak, quiet, calm, flow, since_filter,
+        now.status, now.time + dt, now.step_count + (dt > 0.0), kinetic, peak, quiet, calm, flow_before, since_filter,
         since_average, fastest**0.5,
-        gravity_work, now.stress_work + work, plastic, friction, now.grid_gain + gain,
-        touched[0], touched[1], touched[2], touched[3], culprit,
+        now.gravity_work + controls.gravity * fall, now.stress_work + work, now.plastic_work + plastic,
+        now.friction_work + friction, now.grid_gain + gain, touched[0], touched[1], touched[2], touched[3], culprit,
     )  # fmt: skip
     return judge(after, points, controls)
+
+
+@kernel
+def time_of_calm(now, kinetic, dissipated, dt, controls):
+    """How long next to nothing has flowed, slid or flown [s], and what had been dissipated when that began [J/m]."""
+    flow = now.plastic_work + now.friction_work + dissipated
+    in_play = controls.energy_scale + abs(now.gravity_work)
+    if flow - now.flow_before > CALM_FLOW * in_play or kinetic > CALM_MOTION * in_play:
+        return 0.0, flow
+    return now.calm_time + dt, now.flow_before
 
 
 @kernel
