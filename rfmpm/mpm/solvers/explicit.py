@@ -9,7 +9,7 @@ from rfmpm.mpm.solvers.grid import clear, divide_straining, subtract_second_proj
 from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNING, Progress
 from rfmpm.mpm.transfer import carry_points, project_twice, update_velocities
 
-RESOLVED_SHARE = 0.5  # of the square of the Courant number: a node's share of the mass at a wall that a step resolves
+RESOLVED_SHARE = 0.2  # of the square of the Courant number: a node's share of the mass at a wall that a step resolves
 CALM_FLOW = 1e-4  # share of the energy in play that plastic flow and friction may take in a time that counts as calm
 CALM_MOTION = 1e-2  # share of it that may be kinetic
 
