@@ -15,32 +15,34 @@ VERDICT = """## What is kept, what is dropped
 **Kept as the default: quadratic B-splines, FLIP with FMPM(2) at a slow rate, stress last.** No scheme is best on every
 scene. This one is never far from the front, and it has no scene on which it fails.
 
-**Shapes.** *Linear* shapes are best where no point leaves its cell (the bar). Once points cross cells their stresses get
-worse on finer grids (the column, the vortex), whatever the transfer. They stay because published results were made with
-them. *GIMP* converges, costs more than the quadratic spline and needs a second mapping; it stays for comparison.
-The *quadratic B-spline* has the least error for its time in the vortex and does well on the column and the slope. The
-*cubic B-spline* is the more exact one on the column for about half as much again per step, no better in the vortex and
-the bar, and it does not hold a body of one point per cell: offered, not the default.
+**Shapes.** *Linear* shapes are best where no point leaves its cell (the bar). Once points cross cells their errors
+grow on finer grids (the column and, without a filter in every step, the vortex). They stay because published results
+were made with them. *GIMP* converges, costs more than the quadratic spline and needs a second mapping; it stays for
+comparison. The *quadratic B-spline* has the least error for its time in the vortex and does well on the column and the
+slope. The *cubic B-spline* is the more exact one on the column, no better in the vortex and worse on the bar, dearer
+in every step, and it does not hold a body of one point per cell: offered, not the default.
 
 **Transfers.** *PIC* and *FMPM in every step* take a share of the motion in each step. It does not show where little
-moves against the grid (column, vortex) and ruins the bar, where PIC loses about a fifth of the energy in each period and
-FMPM(4) still several per cent; the slope stops short. More terms only move the trouble. Dropped. *APIC* and *TPIC* are
-as good as FLIP on column and vortex, and on the bar better than it; on the slope they stop short by more than FLIP on
-every shape, since they too dissipate by step and not by time. Dropped: the engine is for run-out. *FLIP alone* is close to the default
-everywhere, but nothing damps what the grid cannot see. *FLIP with FMPM(2) in 5 s* costs the same errors and a few per
-cent of time. Kept, with FLIP alone as its limit for a rate of zero.
+moves against the grid (column, vortex) and ruins the bar, where PIC loses about a fifth of the energy in a period and
+FMPM(4) still several per cent; on the slope PIC misses the run-out by more than half of it. Dropped. *APIC* and *TPIC*
+are as good as FLIP with splines on column and vortex, and better on the bar; with linear shapes they break down on the
+column, and on the slope, with splines and GIMP, they are further from the run-out than FLIP: they dissipate in each
+step, however short it is. Dropped: the engine is for run-out. *FLIP alone* errs as the default does, but nothing damps
+what the grid cannot see: on the slope that jitter makes it take several times as long to come to rest with every shape
+but the quadratic spline. *FLIP with FMPM(2) in 5 s* has neither fault, for a few per cent of the time. Kept; FLIP
+alone is its limit for a rate of zero.
 
-**Orders.** *Stress last* without a second mapping is the cheapest and all that splines need; linear shapes and GIMP blow
-up with it in an elastic block in the air, at any time step, so they get *MUSL*. *MUSL* and *stress first* with quadratic
-splines have smaller errors on coarse columns and no more on fine ones, for a dearer step; stress first with linear shapes
-breaks on the column. Stress first is dropped.
+**Orders.** *Stress last* without a second mapping is the cheapest and all that splines need; linear shapes and GIMP
+blow up with it in an elastic block in the air, at any time step, so they get *MUSL*. *MUSL* and *stress first* with
+quadratic splines have smaller errors on coarse columns and no smaller ones on fine columns, for a dearer step; stress
+first with linear shapes breaks on the column. Stress first is dropped.
 
-**Points per cell.** Nine or sixteen instead of four help cubic splines on the column, and otherwise cost their time for
-little.
+**Points per cell.** Nine or sixteen instead of four help splines on the column by up to a fifth, for two to four times
+the time; halving the cell is the better buy. GIMP gets worse.
 
-**Step.** The same blocks in the air give the critical steps of `COURANT` in `rfmpm/mpm/shapes`: cubic splines are stable
-at 1.0 of a cell per wave's passage and not at 1.1. Quadratic splines, whose value there is 0.8, were stable up to 0.7 for
-every place and number of points that was tried, and at 0.8 not for all; the default of half leaves room for that.
+**Step.** `COURANT` in `rfmpm/mpm/shapes` is from elastic blocks in the air: cubic splines are stable at 1.0 of a cell
+per wave's passage and not at 1.1. Quadratic splines, whose value there is 0.8, were stable at 0.7 for every place of
+the block and every number of points tried, and not for all at 0.8; the default of half of it leaves room for that.
 
 Errors and CPU times below are over those of quadratic B-splines with FLIP + FMPM(2) in 5 s, stress last, on the same
 cells: geometric means over the grids, less than 1 is better.
