@@ -18,9 +18,10 @@ scene. This one is never far from the front, and it has no scene on which it fai
 **Shapes.** *Linear* shapes are best where no point leaves its cell (the bar). Once points cross cells their errors
 grow on finer grids (the column, and with FLIP the vortex). They stay because published results were made with them.
 *GIMP* converges, costs more than the quadratic spline and needs a second mapping; it stays for comparison. The
-*quadratic B-spline* has the least error for its time in the vortex and does well on the column and the slope. The
-*cubic B-spline* is the more exact one on the column, no better in the vortex and worse on the bar, dearer in every
-step, and it does not hold a body of one point per cell: offered, not the default.
+*quadratic B-spline* has the least error for its time in the vortex and does well on the column and the slope. On fine
+columns its error levels off, and so does that of GIMP. The *cubic B-spline* is the only one whose error there keeps
+falling; it is no better in the vortex and worse on the bar, dearer in every step, and it does not hold a body of one
+point per cell: offered, not the default.
 
 **Transfers.** *PIC* and *FMPM in every step* take a share of the motion in each step. It does not show where little
 moves against the grid (column, vortex) and ruins the bar, where PIC loses about a quarter of the energy in a period
