@@ -1,5 +1,6 @@
 """`rfmpm benchmark ...`: measures the program on this machine."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -13,48 +14,55 @@ benchmark = typer.Typer(
 
 ReportFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the report.")]
 Quick = Annotated[bool, typer.Option("--quick", help="A few cases only: a look at the machinery.")]
+Write = Callable[[Path, bool, Callable[[str], None]], Path]  # (folder, quick, told the progress) -> the report
 
 
-@benchmark.command("engine")
-@ends_in_words
-def engine(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:
+def command(load: Callable[[], Write]) -> Callable[[], Write]:
+    """Make a command of a function that imports what writes a report and returns it; its docstring is the help."""
+
+    @benchmark.command(load.__name__, help=load.__doc__)
+    @ends_in_words
+    def measure(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:
+        typer.echo(load()(out, quick, typer.echo))
+
+    return load
+
+
+@command
+def engine() -> Write:
     """Run time against error of every shape with every transfer: run_time_against_error.md and its pictures."""
     from rfmpm.benchmark.engine.document import run
 
-    typer.echo(run(out, quick, typer.echo))
+    return run
 
 
-@benchmark.command("stability")
-@ends_in_words
-def stability(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:
+@command
+def stability() -> Write:
     """Sweep soils, steps and scenes to find what breaks the engine: stability.md and its pictures."""
     from rfmpm.benchmark.stability.document import run
 
-    typer.echo(run(out, quick, typer.echo))
+    return run
 
 
-@benchmark.command("savings")
-@ends_in_words
-def savings(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:
+@command
+def savings() -> Write:
     """Measure what is saved by each thing that a scene does not need and the program skips: savings.md."""
     from rfmpm.benchmark.savings import run
 
-    typer.echo(run(out, quick, typer.echo))
+    return run
 
 
-@benchmark.command("slope")
-@ends_in_words
-def slope(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:
+@command
+def slope() -> Write:
     """Run the short slope over time steps, constants, cells and kinds of softening: slope_error.md."""
     from rfmpm.benchmark.slope_error import write
 
-    typer.echo(write(out, quick, typer.echo))
+    return write
 
 
-@benchmark.command("verification")
-@ends_in_words
-def verification(out: ReportFolder = Path("reports"), quick: Quick = False) -> None:
+@command
+def verification() -> Write:
     """Compare the engine with exact and measured answers: verification.md."""
     from rfmpm.benchmark.verification import write
 
-    typer.echo(write(out, quick, typer.echo))
+    return write

@@ -115,7 +115,7 @@ class Worker:
                 self.prepare()
                 self._loop(writer, claim)
         except Abandoned:
-            pass
+            pass  # a signal: the last report says so, and the realisation at hand is left to a later run
         except Exception as failure:
             error = _described(failure)
         try:

@@ -2,24 +2,16 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from math import floor, isclose, radians, sqrt, tan
+from math import sqrt
 
 from rfmpm.study.errors import Problem
 from rfmpm.study.known import Known, Unknown, problem
 from rfmpm.study.material_checks import MATERIAL_CHECKS
 from rfmpm.study.schema import one_of
+from rfmpm.study.size_checks import SIZE_CHECKS
 
-LARGEST_POINT_COUNT = 5_000_000
-LARGEST_CELL_COUNT = 20_000_000
-LARGEST_BIN_COUNT = 100_000
-LARGEST_STEP_COUNT = 1_000_000_000
-HIGHEST_SELF_COMPRESSION = 0.5  # of the lowest soil under the weight above, by small-strain elasticity
-GRAVITY = 9.81  # [m/s2]
-LARGEST_CHOLESKY_COUNT = 20_000
 LARGEST_CELL_OVER_LENGTH = 1.0  # of a softening length; the transfer itself averages over 0.7 cells
 HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION = 0.99  # towards 1 a truncated normal becomes exponential
-SMALLEST_CELLS = {("slope", "height_m"): 4, ("slope", "crest_m"): 2, ("block", "width_m"): 2, ("block", "height_m"): 1}
-WIDEST_SPLINE_CELLS = 3  # cells that the four nodes of a cubic B-spline span
 
 
 def joint_problems(known: Known) -> list[Problem]:
@@ -33,117 +25,6 @@ def joint_problems(known: Known) -> list[Problem]:
             except (StopIteration, Unknown):
                 break
     return found
-
-
-def _lengths_fit_the_cells(known: Known, name: str) -> Iterator[Problem]:
-    kind, cell, length = known["geometry.kind"], known["discretisation.cell_m"], known[f"geometry.{name}"]
-    least, cells = SMALLEST_CELLS[kind, name], length / cell
-    if kind == "block" and name == "width_m" and known["discretisation.shape"] == "cubic_bspline":
-        least = WIDEST_SPLINE_CELLS
-    if isclose(cells, round(cells), rel_tol=1e-9) and round(cells) >= least:
-        return
-    nearest = [cell * count for count in (floor(cells), floor(cells) + 1) if count >= least] or [cell * least]
-    text = (
-        f"must be a whole number of cells of {cell:.10g} m, at least {least}; "
-        f"nearest: {' or '.join(f'{value:.10g}' for value in nearest)}"
-    )
-    yield problem(known, f"geometry.{name}", text)
-
-
-def _height_fits(known: Known) -> Iterator[Problem]:
-    yield from _lengths_fit_the_cells(known, "height_m")
-
-
-def _width_fits(known: Known) -> Iterator[Problem]:
-    yield from _lengths_fit_the_cells(known, "crest_m" if known["geometry.kind"] == "slope" else "width_m")
-
-
-def _body(known: Known) -> tuple[float, float, float]:
-    """Area [m2], length [m] and height [m] of the body."""
-    height = known["geometry.height_m"]
-    if known["geometry.kind"] == "block":
-        width = known["geometry.width_m"]
-        return width * height, width, height
-    crest, face = known["geometry.crest_m"], height / tan(radians(known["geometry.angle_deg"]))
-    return (crest + 0.5 * face) * height, crest + face, height
-
-
-def _points_are_affordable(known: Known) -> Iterator[Problem]:
-    cell, per_cell = known["discretisation.cell_m"], known["discretisation.points_per_cell"]
-    count = _body(known)[0] / cell**2 * per_cell
-    fields = known["random_field"]
-    if count > LARGEST_POINT_COUNT:
-        yield problem(known, "discretisation.cell_m", _too_many("material points", count, LARGEST_POINT_COUNT, cell))
-    elif "cohesion" in fields and count > LARGEST_CHOLESKY_COUNT:
-        method = "random_field.cohesion.method"
-        if known[method] == "cholesky":
-            text = (
-                f"{count:,.0f} material points need a dense factor of {count**2 * 8 / 1e9:,.1f} GB; at most "
-                f"{LARGEST_CHOLESKY_COUNT:,} points: take discretisation.cell_m of at least "
-                f"{cell * sqrt(count / LARGEST_CHOLESKY_COUNT):.3g}, or fewer discretisation.points_per_cell"
-            )
-            yield problem(known, method, text)
-
-
-def _cells_are_affordable(known: Known) -> Iterator[Problem]:
-    cell = known["discretisation.cell_m"]
-    _, length, height = _body(known)
-    count = (length + known["geometry.foreland_m"]) * height / cell**2
-    if count > LARGEST_CELL_COUNT:
-        yield problem(known, "discretisation.cell_m", _too_many("cells", count, LARGEST_CELL_COUNT, cell))
-
-
-def _too_many(what: str, count: float, most: int, cell: float) -> str:
-    larger = cell * sqrt(count / most)
-    return f"gives {_rounded(count)} {what} in this geometry, at most {most:,}: take cells of at least {larger:.3g} m"
-
-
-def _rounded(count: float) -> str:
-    return f"{count:,.0f}" if count < 1e12 else f"{count:.3g}"
-
-
-def _surface_bins_are_affordable(known: Known) -> Iterator[Problem]:
-    width = known["output.surface_bin_m"]
-    length = _body(known)[1] + known["geometry.foreland_m"]
-    if width and length / width > LARGEST_BIN_COUNT:
-        least = length / LARGEST_BIN_COUNT
-        text = f"gives {_rounded(length / width)} bins, at most {LARGEST_BIN_COUNT:,}: take {least:.3g} or more"
-        yield problem(known, "output.surface_bin_m", text)
-
-
-def _constrained_modulus(known: Known, index: int) -> float:
-    """Constrained modulus of a material [kPa]."""
-    modulus, ratio = known[f"material.{index}.youngs_modulus_kpa"], known[f"material.{index}.poissons_ratio"]
-    return modulus * (1 - ratio) / ((1 + ratio) * (1 - 2 * ratio))
-
-
-def _stiffness_carries_the_weight(known: Known) -> Iterator[Problem]:
-    """The soil must bear its own weight at strains for which the law and the initial stresses have a meaning."""
-    height = known["geometry.height_m"]
-    for index in range(len(known["material"])):
-        weight = known[f"material.{index}.unit_weight_kn_m3"] * height
-        limit = weight / HIGHEST_SELF_COMPRESSION
-        modulus = _constrained_modulus(known, index)
-        if modulus < limit:
-            key = f"material.{index}.youngs_modulus_kpa"
-            text = (
-                f"must be at least {known[key] * limit / modulus:.4g}: under its own weight of {weight:.4g} kPa "
-                f"softer soil is compressed by more than {100 * HIGHEST_SELF_COMPRESSION:g} %"
-            )
-            yield problem(known, key, text)
-
-
-def _steps_are_affordable(known: Known) -> Iterator[Problem]:
-    cell, fraction, end = known["discretisation.cell_m"], known["time.step_fraction"], known["time.end_s"]
-    for index in range(len(known["material"])):
-        modulus, weight = _constrained_modulus(known, index), known[f"material.{index}.unit_weight_kn_m3"]
-        steps = end / fraction * sqrt(modulus / weight) * sqrt(GRAVITY) / cell
-        if steps > LARGEST_STEP_COUNT:
-            text = (
-                f"takes about {_rounded(steps)} time steps with these cells and this stiffness, at most "
-                f"{LARGEST_STEP_COUNT:,}: end by {end * LARGEST_STEP_COUNT / steps:.3g} s, or take larger cells"
-            )
-            yield problem(known, "time.end_s", text)
 
 
 def _residual_is_below_the_peak(known: Known) -> Iterator[Problem]:
@@ -232,13 +113,7 @@ def _truncated_normal_can_spread_so(known: Known) -> Iterator[Problem]:
 
 
 CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
-    _height_fits,
-    _width_fits,
-    _points_are_affordable,
-    _cells_are_affordable,
-    _surface_bins_are_affordable,
-    _stiffness_carries_the_weight,
-    _steps_are_affordable,
+    *SIZE_CHECKS,
     _residual_is_below_the_peak,
     _softening_does_not_snap_back,
     _softening_has_one_length,

@@ -11,7 +11,8 @@ from rfmpm.report.style import BLUE, DOTS_PER_INCH, GREY, ORANGE, VERMILION, dra
 
 COLOURS = dict(zip(SHAPE_LABELS, (GREY, ORANGE, BLUE, VERMILION), strict=True))
 MARKERS = dict(zip(TRANSFER_LABELS, "oDsPXv^", strict=True))
-WIDTH, PANEL = 11.0, 5.2  # inches
+WIDTH, PANEL, LEGEND = 11.0, 5.2, 1.1  # inches
+WORTH_A_NAME = 0.9  # a point of the front gets one where its error is below this share of the last one named
 
 
 def shown(measured: Sequence[Measurement], error: str) -> list[Measurement]:
@@ -39,13 +40,13 @@ def draw(measured: Sequence[Measurement], title: str, errors: dict[str, str], pa
         path: PNG file.
     """
     with drawing():
-        figure = new_figure(WIDTH, PANEL * len(errors) + 0.3)
+        figure = new_figure(WIDTH, PANEL * len(errors) + LEGEND)
         panels = figure.subplots(len(errors), 2, squeeze=False, width_ratios=(1.9, 1.0))
         for (name, label), (axes, side) in zip(errors.items(), panels, strict=True):
             lines = _panel(axes, measured, name, label)
             side.axis("off")
-            side.text(0.0, 0.0, "\n".join(lines), fontsize=7.0, va="bottom", transform=side.transAxes)
-        _legend(panels[0][1], {one.scheme.transfer for one in measured})
+            side.text(0.0, 1.0, "\n".join(lines), fontsize=7.0, va="top", transform=side.transAxes)
+        _legend(figure, {one.scheme.transfer for one in measured})
         panels[0][0].set_title(title)
         figure.savefig(path, dpi=DOTS_PER_INCH)
 
@@ -76,7 +77,7 @@ def _panel(axes, measured, name, label) -> list[str]:
             [one.cpu_time for one in best], [one.errors[name] for one in best],
             where="post", color="black", linewidth=0.9, linestyle="-" if engine == "fast" else "--",
         )  # fmt: skip
-        for number, one in enumerate(best, start=1):
+        for number, one in enumerate(_named(best, name), start=1):
             mark = f"{number}" if engine == "plain" else "abcdefghijklmnopq"[number - 1]
             axes.annotate(
                 mark, (one.cpu_time, one.errors[name]), xytext=(-4, -11), textcoords="offset points",
@@ -86,7 +87,16 @@ def _panel(axes, measured, name, label) -> list[str]:
     return lines
 
 
-def _legend(side, transfers) -> None:
+def _named(best, name):
+    """The points of a front that differ enough to be told apart."""
+    kept = []
+    for one in best:
+        if not kept or one.errors[name] < WORTH_A_NAME * kept[-1].errors[name]:
+            kept.append(one)
+    return kept
+
+
+def _legend(figure, transfers) -> None:
     from matplotlib.lines import Line2D
 
     handles = [Line2D([], [], color=colour, label=SHAPE_LABELS[shape]) for shape, colour in COLOURS.items()]
@@ -101,4 +111,4 @@ def _legend(side, transfers) -> None:
         Line2D([], [], color="black", linestyle=":", label="more than 4 points per cell"),
         Line2D([], [], color="black", linestyle="--", label="front of the plain solver"),
     ]
-    side.legend(handles=handles, loc="upper left", fontsize=7.5, borderaxespad=0.0)
+    figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=8.0)

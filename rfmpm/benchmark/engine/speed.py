@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import inf
 
-from rfmpm.benchmark.engine import taichi_peer
 from rfmpm.benchmark.engine.plain_loop import empty_nodes, three_loops
 from rfmpm.benchmark.engine.runs import Run
 from rfmpm.benchmark.engine.schemes import Scheme
@@ -104,12 +103,15 @@ def _run(scene: scenes.Scene, scheme: Scheme) -> Code:
 
 
 def _peer(scene: scenes.Scene) -> Code | None:
-    advance = taichi_peer.build(scene, scenes.release(scene, None).law, _time_step(scene))
-    if advance is None:
+    """The peer; None where Taichi is not installed."""
+    try:
+        from rfmpm.benchmark.engine.taichi_peer import Peer
+    except ImportError:
         return None
+    peer = Peer(scene, scenes.release(scene, None).law, _time_step(scene))
 
     def steps() -> int:
-        advance(STEPS)
+        peer.advance(STEPS)
         return STEPS
 
     return lambda: steps

@@ -1,15 +1,12 @@
 """Drucker-Prager plasticity with a tension cut-off, matched to Mohr-Coulomb in plane strain."""
 
 from math import inf, sqrt
-from typing import NamedTuple
 
 from rfmpm.kernel_tools import Tensor
-from rfmpm.mpm.laws.frictional import THIRD, Angle, FrictionalHistory, build_frictional, predict, strength
-
-SMALLEST = 1e-300  # [Pa]; keeps a deviator of nothing finite
+from rfmpm.mpm.laws.frictional import SMALLEST, THIRD, FrictionalHistory, FrictionalLaw, predict, strength
 
 
-class DruckerPrager(NamedTuple):
+class DruckerPrager(FrictionalLaw):
     """Drained soil: sqrt(J2) + a p <= k, and p <= the tension cut-off.
 
     The engine is plane strain, so the cone is the one that flows there at the strength c, phi and with the dilation psi
@@ -21,15 +18,6 @@ class DruckerPrager(NamedTuple):
     Flow: b in shear, associated on the cut-off, which is a bound of the mean stress here; both where they meet. A
     cut-off beyond the apex c cot(phi) never acts, and it does not soften. The plastic strain is that of the deviator.
     """
-
-    lame: float  # first Lame parameter [Pa]
-    shear: float  # shear modulus [Pa]
-    peak: float  # cohesion, per point or uniform [Pa]
-    residual: float  # cohesion [Pa]
-    friction: Angle
-    dilation: Angle
-    tension: float  # largest mean stress; infinite for none [Pa]
-    softening: float  # one over the plastic strain at which the residual is reached; 0 for no softening [-]
 
     def update_stress(self, stress, strain_increment, history, dt):
         """Elastic predictor and exact return to cone, cut-off, their corner or the apex."""
@@ -55,8 +43,3 @@ class DruckerPrager(NamedTuple):
         updated = Tensor(after + scale * sxx, after + scale * syy, after + scale * szz, scale * trial.xy)
         growth = (tau - relaxed) * sqrt(THIRD) / self.shear
         return updated, FrictionalHistory(history.plastic_strain + growth, opening + opened)
-
-    @classmethod
-    def build(cls, material, cell, count, cohesion):
-        """Make the law and its history from a study's material; arguments as for `VonMises.build`."""
-        return build_frictional(cls, material, cell, count, cohesion)

@@ -17,6 +17,7 @@ from rfmpm.kernel_tools import Tensor, inlined
 from rfmpm.mpm.laws.elastic import hooke, lame_constants
 
 THIRD = 1.0 / 3.0
+SMALLEST = 1e-300  # [Pa]; keeps the direction of a stress without direction finite
 SINE_SERIES = tuple(-1.0 / (k * (k + 1.0)) for k in range(2, 18, 2))  # from one term to the next
 
 
@@ -91,31 +92,41 @@ def predict(law, stress, strain_increment, opening):
     return raised, opening - closing
 
 
-def build_frictional(law, material, cell, count, cohesion):
-    """Make a law of frictional soil and its history; arguments as for `VonMises.build`.
+class FrictionalLaw(NamedTuple):
+    """Parameters of a frictional law; the laws themselves add `update_stress`."""
 
-    The plastic strain at which the residual is reached is divided by cell over reference cell, where the material names
-    one. The residual cohesion is proportional to the peak, point by point.
+    lame: float  # first Lame parameter [Pa]
+    shear: float  # shear modulus [Pa]
+    peak: float  # cohesion, per point or uniform [Pa]
+    residual: float  # cohesion [Pa]
+    friction: Angle
+    dilation: Angle
+    tension: float  # cut-off, in the law's own measure of tension; infinite for none [Pa]
+    softening: float  # one over the plastic strain at which the residual is reached; 0 for no softening [-]
 
-    Returns:
-        The law, of class `law`, and a fresh history, with arrays of shape (count,).
-    """
-    lame, shear = lame_constants(material.youngs_modulus_kpa * 1e3, material.poissons_ratio)
-    peak = np.full(count, material.cohesion_kpa * 1e3) if cohesion is None else np.asarray(cohesion)
-    ratio = material.residual_cohesion_kpa / material.cohesion_kpa if material.cohesion_kpa > 0.0 else 1.0
-    softening = 0.0
-    if material.residual_plastic_strain is not None:
-        softening = 1.0 / material.residual_plastic_strain
-        if material.softening_reference_cell_m is not None:
-            softening *= cell / material.softening_reference_cell_m
-    made = law(
-        lame,
-        shear,
-        peak,
-        peak * ratio,
-        Angle(radians(material.friction_angle_deg), radians(material.residual_friction_angle_deg)),
-        Angle(radians(material.dilation_angle_deg), radians(material.residual_dilation_angle_deg)),
-        np.inf if material.tension_cutoff_kpa is None else material.tension_cutoff_kpa * 1e3,
-        softening,
-    )
-    return made, FrictionalHistory(np.zeros(count), np.zeros(count))
+    @classmethod
+    def build(cls, material, cell, count, cohesion):
+        """Make the law and its history from a study's material; arguments and results as for `VonMises.build`.
+
+        The plastic strain at which the residual is reached is divided by cell over reference cell, where the material
+        names one. The residual cohesion is proportional to the peak, point by point.
+        """
+        lame, shear = lame_constants(material.youngs_modulus_kpa * 1e3, material.poissons_ratio)
+        peak = np.full(count, material.cohesion_kpa * 1e3) if cohesion is None else np.asarray(cohesion)
+        ratio = material.residual_cohesion_kpa / material.cohesion_kpa if material.cohesion_kpa > 0.0 else 1.0
+        softening = 0.0
+        if material.residual_plastic_strain is not None:
+            softening = 1.0 / material.residual_plastic_strain
+            if material.softening_reference_cell_m is not None:
+                softening *= cell / material.softening_reference_cell_m
+        law = cls(
+            lame,
+            shear,
+            peak,
+            peak * ratio,
+            Angle(radians(material.friction_angle_deg), radians(material.residual_friction_angle_deg)),
+            Angle(radians(material.dilation_angle_deg), radians(material.residual_dilation_angle_deg)),
+            np.inf if material.tension_cutoff_kpa is None else material.tension_cutoff_kpa * 1e3,
+            softening,
+        )
+        return law, FrictionalHistory(np.zeros(count), np.zeros(count))

@@ -4,9 +4,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from rfmpm.kernel_tools import Tensor, inlined
-from rfmpm.mpm.laws.frictional import THIRD, Angle, FrictionalHistory, build_frictional, predict, strength
-
-SMALLEST = 1e-300  # keeps the direction of a stress without direction finite
+from rfmpm.mpm.laws.frictional import SMALLEST, THIRD, FrictionalHistory, FrictionalLaw, predict, strength
 
 
 class Principal(NamedTuple):
@@ -100,7 +98,7 @@ def relax(trial, tension, limit, s, p, lame, shear):
     return relaxed, growth, mean / (lame + 2.0 * THIRD * shear)
 
 
-class MohrCoulomb(NamedTuple):
+class MohrCoulomb(FrictionalLaw):
     """Drained soil: (s1 - s3) + (s1 + s3) sin(phi) <= 2 c cos(phi), and s1 <= the tension cut-off.
 
     Plastic flow: the same with the dilation angle in shear, associated in tension. Where each surface alone would leave
@@ -109,15 +107,6 @@ class MohrCoulomb(NamedTuple):
 
     The plastic strain is that of the deviator, so that soil which opens without shear keeps its strength.
     """
-
-    lame: float  # first Lame parameter [Pa]
-    shear: float  # shear modulus [Pa]
-    peak: float  # cohesion, per point or uniform [Pa]
-    residual: float  # cohesion [Pa]
-    friction: Angle
-    dilation: Angle
-    tension: float  # largest principal stress; infinite for none [Pa]
-    softening: float  # one over the plastic strain at which the residual is reached; 0 for no softening [-]
 
     def update_stress(self, stress, strain_increment, history, dt):
         """Elastic predictor and exact return in principal stresses, two of which lie in the plane."""
@@ -142,8 +131,3 @@ class MohrCoulomb(NamedTuple):
         scale = 0.5 * (high_after - low_after) / max(radius, SMALLEST)
         updated = Tensor(mean + scale * half, mean - scale * half, across, scale * trial.xy)
         return updated, FrictionalHistory(history.plastic_strain + growth, opening)
-
-    @classmethod
-    def build(cls, material, cell, count, cohesion):
-        """Make the law and its history from a study's material; arguments as for `VonMises.build`."""
-        return build_frictional(cls, material, cell, count, cohesion)

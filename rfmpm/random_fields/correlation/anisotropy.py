@@ -1,5 +1,6 @@
 """What every correlation shares: two scales of fluctuation and the direction of the first."""
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import cos, inf, sin
 
@@ -7,7 +8,7 @@ import numpy as np
 
 
 @dataclass(frozen=True)
-class Anisotropy:
+class Anisotropy(ABC):
     """Scales of fluctuation of a correlation and the direction they refer to.
 
     A scale of fluctuation theta is the integral of the correlation over all lags, from minus to plus infinity, along
@@ -33,6 +34,7 @@ class Anisotropy:
         if not abs(self.rotation) < inf:
             raise ValueError(f"rotation = {self.rotation}: must be finite")
 
+    @abstractmethod
     def rho(self, lag_x: np.ndarray, lag_y: np.ndarray) -> np.ndarray:
         """Correlation at a lag.
 
@@ -43,7 +45,6 @@ class Anisotropy:
         Returns:
             correlation, same shape [-].
         """
-        raise NotImplementedError
 
     def relative_lags(self, lag_x: np.ndarray, lag_y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Lags along the h axis and across it, each divided by its scale of fluctuation [-]."""
