@@ -62,7 +62,7 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
             update_velocities(points, axes, grid, grid.filtered, blend)
         else:
             update_velocities(points, axes, grid, None, blend)
-        divide_straining(grid, box)
+        friction = divide_straining(grid, box)
         clear(grid.parts, box)
         clear(grid.sums, box)
         moved = carry_points(points, law, history, axes, grid, cells, None, blend, grid.straining, dt)
