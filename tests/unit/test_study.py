@@ -362,6 +362,13 @@ def test_residuals_of_a_drained_soil_default_to_the_peaks(study):
     assert soil.residual_plastic_strain is None
 
 
+def test_cubic_splines_need_more_than_one_point_per_cell(study):
+    one = {"discretisation.points_per_cell": 1}
+    assert study.with_changes({**one, "discretisation.shape": "quadratic_bspline"}) is not None  # a refusal raises
+    (problem,) = problems_of(study, {**one, "discretisation.shape": "cubic_bspline"})
+    assert problem.startswith("discretisation.points_per_cell = 1: must be at least 4 where shape")
+
+
 def test_volumetric_strain_that_is_not_given_follows_the_law(study, drained):
     def of(changed):
         return changed.discretisation.volumetric_strain
