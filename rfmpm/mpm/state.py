@@ -58,7 +58,6 @@ class Progress(NamedTuple):
     stress_work: float  # elastic and plastic [J/m]
     plastic_work: float  # the part of it that is not stored [J/m]
     friction_work: float  # taken by friction on walls [J/m]
-    grid_gain: float  # kinetic energy gained on the grid, summed over the steps [J/m]
     first_column: int  # the nodes that points touch
     last_column: int
     first_row: int
@@ -87,7 +86,6 @@ def start() -> Progress:
         stress_work=0.0,
         plastic_work=0.0,
         friction_work=0.0,
-        grid_gain=0.0,
         first_column=0,
         last_column=-1,
         first_row=0,

@@ -66,8 +66,10 @@ class Discretisation(Table):
         description="Material points in a full cell"
     )
     shape: Literal["linear", "gimp", "quadratic_bspline", "cubic_bspline"] = Field(description="Shape function")
-    volumetric_strain: Literal["cell_mean", "point"] = Field(
-        "cell_mean", description="Volumetric strain and pressure: mean over the points of a cell, or each point's own"
+    volumetric_strain: Literal["cell_mean", "point"] | None = Field(
+        None,
+        description="Volumetric strain and pressure: mean over the points of a cell, or each point's own. "
+        "Default: point for a law with friction, else cell_mean",
     )
     dissipation_time_s: Annotated[float, Strict(), Hint("inf for no dissipation")] = Field(
         5.0, gt=0, description="Time in which the transfer damps velocities below the grid's resolution [s]; inf = none"

@@ -40,6 +40,13 @@ def _width_fits(known: Known) -> Iterator[Problem]:
     yield from _lengths_fit_the_cells(known, "crest_m" if known["geometry.kind"] == "slope" else "width_m")
 
 
+def _points_resist_every_motion(known: Known) -> Iterator[Problem]:
+    """With one point per cell a cubic spline has motions that strain no point; the initial stresses are then noise."""
+    if known["discretisation.shape"] == "cubic_bspline" and known["discretisation.points_per_cell"] == 1:
+        text = 'must be at least 4 where shape = "cubic_bspline", else some motions strain no point'
+        yield problem(known, "discretisation.points_per_cell", text)
+
+
 def _body(known: Known) -> tuple[float, float, float]:
     """Area [m2], length [m] and height [m] of the body."""
     height = known["geometry.height_m"]
@@ -131,6 +138,7 @@ def _steps_are_affordable(known: Known) -> Iterator[Problem]:
 SIZE_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _height_fits,
     _width_fits,
+    _points_resist_every_motion,
     _points_are_affordable,
     _cells_are_affordable,
     _surface_bins_are_affordable,

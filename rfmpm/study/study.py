@@ -19,6 +19,7 @@ from rfmpm.study.models import (
     Boundary,
     Campaign,
     Discretisation,
+    FrictionalMaterial,
     Geometry,
     Material,
     Output,
@@ -66,6 +67,16 @@ class Study(Table):
         known = Known(type(self), diagnosis.data, diagnosis.doubtful)
         if problems := diagnosis.problems + joint_problems(known):
             raise StudyError([str(problem) for problem in problems])
+
+    def model_post_init(self, context: object) -> None:
+        """Let the law decide a `volumetric_strain` that is not given, without counting it among the given keys.
+
+        Means over cells keep soil that yields at constant volume from locking; with friction they let a slope move that
+        should stand.
+        """
+        if self.discretisation.volumetric_strain is None:
+            has_friction = any(isinstance(material, FrictionalMaterial) for material in self.material)
+            object.__setattr__(self.discretisation, "volumetric_strain", "point" if has_friction else "cell_mean")
 
     @property
     def physics_hash(self) -> str:

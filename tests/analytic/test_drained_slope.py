@@ -23,12 +23,7 @@ def largest_displacement(law, friction, cohesion):
         {
             "study": {"name": "drained slope", "seed": 1},
             "geometry": {"kind": "slope", "height_m": HEIGHT, "crest_m": 6.0, "angle_deg": 45.0, "foreland_m": 6.0},
-            "discretisation": {
-                "cell_m": 0.25,
-                "points_per_cell": 4,
-                "shape": "quadratic_bspline",
-                "volumetric_strain": "point",
-            },
+            "discretisation": {"cell_m": 0.25, "points_per_cell": 4, "shape": "quadratic_bspline"},
             "boundary": {"base": {"kind": "fixed"}, "sides": {"kind": "roller"}},
             "material": [
                 {

@@ -7,6 +7,7 @@ import pytest
 
 import rfmpm
 from rfmpm import realisation
+from rfmpm.benchmark.stability.arrangements import lone_point
 
 STUDY = rfmpm.load_study(Path(__file__).parents[2] / "configs" / "short_slope.toml").with_changes(
     {"discretisation.cell_m": 0.5, "time.end_s": 2.0}
@@ -46,6 +47,18 @@ def test_the_least_stiffness_in_the_message_is_accepted():
         STUDY.with_changes(soft | {"material.0.youngs_modulus_kpa": 1.0})
     least = float(refusal.value.problems[0].split("at least ")[1].split(":")[0])
     STUDY.with_changes(soft | {"material.0.youngs_modulus_kpa": 1.001 * least})  # it is written with four digits
+
+
+@pytest.mark.parametrize("shape", ["linear", "gimp"])
+@pytest.mark.parametrize("place", [0.0, 1e-12, 0.1])
+def test_a_lone_point_beside_a_node_falls_and_rests_on_a_rough_base(shape, place):
+    block = {"kind": "block", "width_m": 2.0, "height_m": 2.0, "foreland_m": 2.0}
+    study = STUDY.with_changes({"geometry": block, "discretisation.shape": shape, "time.end_s": 5.0})
+    outcome = realisation.simulate(lone_point(2.0 + place, 0.5, realisation.prepare(study)))
+    assert outcome.status == "ok"
+    # It rests where its weight is carried, half a cell high, and friction took no more than gravity gave.
+    assert 0.49 < outcome.points["y"][0] / study.discretisation.cell_m < 0.5
+    assert 0.0 <= outcome.quantities["friction_work_share"] < 1.0
 
 
 def test_a_point_turned_inside_out_is_a_status():

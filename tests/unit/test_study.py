@@ -362,6 +362,27 @@ def test_residuals_of_a_drained_soil_default_to_the_peaks(study):
     assert soil.residual_plastic_strain is None
 
 
+def test_cubic_splines_need_more_than_one_point_per_cell(study):
+    one = {"discretisation.points_per_cell": 1}
+    assert study.with_changes({**one, "discretisation.shape": "quadratic_bspline"}) is not None  # a refusal raises
+    (problem,) = problems_of(study, {**one, "discretisation.shape": "cubic_bspline"})
+    assert problem.startswith("discretisation.points_per_cell = 1: must be at least 4 where shape")
+
+
+def test_volumetric_strain_that_is_not_given_follows_the_law(study, drained):
+    def of(changed):
+        return changed.discretisation.volumetric_strain
+
+    elastic = {"random_field": {}, "material.0": _elastic(study)}
+    assert (of(study), of(study.with_changes(elastic)), of(drained)) == ("cell_mean", "cell_mean", "point")
+    assert of(drained.with_changes(elastic)) == "cell_mean"
+    assert of(drained.with_changes({"discretisation.volumetric_strain": "cell_mean"})) == "cell_mean"
+    given = study.with_changes({"discretisation.volumetric_strain": "point"})
+    assert of(given.with_changes(elastic)) == "point"
+    written_out = drained.with_changes({"discretisation.volumetric_strain": "point"})
+    assert written_out.physics_hash == load_study(drained.to_toml()).physics_hash == drained.physics_hash
+
+
 @pytest.mark.parametrize(("reference", "scale"), [(None, 1.0), (0.125, 2.0)])
 def test_drained_softening_that_snaps_back_is_refused(drained, reference, scale):
     # Under 5 m of 20 kN/m3; per unit plastic strain the shear stress unloads by sqrt(3) G.

@@ -9,7 +9,7 @@ from rfmpm.benchmark.stability.pictures import MEANINGS, draw_overview, draw_swe
 from rfmpm.benchmark.stability.sweeps import all_sweeps, few
 from rfmpm.benchmark.stability.verdict import CLOSED, FAIL, KINDS, REFUSED, STOPPED, TOO_FAR_OPEN, UNBALANCED, Verdict
 
-PATIENCE = 120.0  # [s] for one case
+PATIENCE = 600.0  # [s] of computing for one case: a minute of compiling at most, then a million steps in some seconds
 EXAMPLES = 4  # of each reason in the report's table
 
 Found = list[tuple[Sweep, list[Verdict]]]

@@ -39,12 +39,11 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
     """
     box = now.first_column, now.last_column, now.first_row, now.last_row
     dt, since_filter, blend, filtering = 0.0, 0.0, 0.0, False
-    gain = friction = 0.0
     if now.last_row >= 0:
         dt = controls.courant * controls.cell / (controls.wave_speed + now.fastest)
         settling = controls.settling_rate if now.calm_time >= controls.rest_time else 0.0
         share = RESOLVED_SHARE * controls.courant**2
-        gain, friction = update_grid(grid, walls, box, controls.gravity, settling, dt, share)
+        update_grid(grid, walls, box, controls.gravity, settling, dt, share)
         rate = 1.0 / controls.dissipation_time + settling
         since_filter = now.since_filter + dt
         filtering = now.step_count % controls.filter_interval == 0 and rate > 0.0
@@ -58,7 +57,7 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
         update_velocities(points, axes, grid, grid.filtered, blend)
     else:
         update_velocities(points, axes, grid, None, blend)
-    divide_straining(grid, box)
+    friction = divide_straining(grid, box)
     clear(grid.parts, box)
     clear(grid.sums, box)
     moved = carry_points(points, law, history, axes, grid, cells, dt)
@@ -75,7 +74,7 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
         now.status, now.time + dt, now.step_count + (dt > 0.0), kinetic, peak, quiet, calm, flow_before, since_filter,
         since_average, fastest**0.5,
         now.gravity_work + controls.gravity * fall, now.stress_work + work, now.plastic_work + plastic,
-        now.friction_work + friction, now.grid_gain + gain, touched[0], touched[1], touched[2], touched[3], culprit,
+        now.friction_work + friction, touched[0], touched[1], touched[2], touched[3], culprit,
     )  # fmt: skip
     return judge(after, points, controls)
 
@@ -109,7 +108,7 @@ def judge(now, points, controls):
     return Progress(
         status, now.time, now.step_count, now.kinetic, now.peak_kinetic, now.quiet_time, now.calm_time,
         now.flow_before, now.since_filter, now.since_average, now.fastest,
-        now.gravity_work, now.stress_work, now.plastic_work, now.friction_work, now.grid_gain,
+        now.gravity_work, now.stress_work, now.plastic_work, now.friction_work,
         now.first_column, now.last_column, now.first_row, now.last_row, now.culprit,
     )  # fmt: skip
 

@@ -44,12 +44,9 @@ def inertia(grid, row, column, last_column, share):
 def update_grid(grid, walls, box, gravity, damping, dt, share):
     """Solve m dv/dt = f - m g - damping m v on the touched nodes, within what the walls allow.
 
-    The change of velocity that goes back to the points includes what the walls took of the mapped momentum. `share`: of
-    the mass at a wall, see `inertia`.
-
-    Returns (gain of kinetic energy, work taken by the walls), both [J/m].
+    The change of velocity that goes back to the points includes what the walls took of the mapped momentum. What they
+    took of the step's own momentum is left in their nodes' `grid.sums`. `share`: of the mass at a wall, see `inertia`.
     """
-    gain = friction = 0.0
     lost = 1.0 - 1.0 / (1.0 + damping * dt)
     last_column = grid.mass.shape[1] - 1
     for row in range(box[2], box[3] + 1):
@@ -66,11 +63,10 @@ def update_grid(grid, walls, box, gravity, damping, dt, share):
                 old_x, old_y, vx, vy = mapped_x, mapped_y, mapped_x + push_x, mapped_y + push_y
                 if row == 0 or column == 0 or column == last_column:
                     old_x, old_y, vx, vy = apply_walls(walls, old_x, old_y, push_x, push_y, row, column, last_column)
-                    friction += 0.5 * m * ((old_x + push_x - vx) * (old_x + vx) + (old_y + push_y - vy) * (old_y + vy))
-                gain += 0.5 * m * (vx * vx + vy * vy - old_x * old_x - old_y * old_y)
+                    grid.sums[row, column, X] = m * (old_x + push_x - vx)
+                    grid.sums[row, column, Y] = m * (old_y + push_y - vy)
             grid.flow[row, column, X], grid.flow[row, column, Y] = vx, vy
             grid.flow[row, column, CHANGE_X], grid.flow[row, column, CHANGE_Y] = vx - mapped_x, vy - mapped_y
-    return gain, friction
 
 
 @kernel
@@ -97,14 +93,24 @@ def divide_straining(grid, box):
     """Turn `grid.straining` from the momentum of the updated points into a velocity; what a wall holds stays held.
 
     The grid's own velocity goes beside it, so that the points read both at once.
+
+    Returns the work that the walls take from the points [J/m]: the momentum they took, times the mean of the points'
+    velocity before and after. The node's own velocity would not do: with a shape whose slope does not vanish with its
+    weight, a node of next to no mass is as good as infinitely fast, and no point follows it.
     """
+    friction, last_column = 0.0, grid.mass.shape[1] - 1
     for row in range(box[2], box[3] + 1):
         for column in range(box[0], box[1] + 1):
-            m = grid.mass[row, column]
+            m, at_wall = grid.mass[row, column], row == 0 or column == 0 or column == last_column
             for k in range(2):
-                is_free = m > 0.0 and grid.flow[row, column, k] != 0.0
-                grid.straining[row, column, k] = grid.straining[row, column, k] / m if is_free else 0.0
-                grid.straining[row, column, MOVING_X + k] = grid.flow[row, column, k]
+                v, after = grid.flow[row, column, k], 0.0
+                if m > 0.0 and v != 0.0:
+                    after = grid.straining[row, column, k] / m
+                    if at_wall:
+                        before = v - grid.flow[row, column, CHANGE_X + k]
+                        friction += 0.5 * grid.sums[row, column, k] * (before + after)
+                grid.straining[row, column, k], grid.straining[row, column, MOVING_X + k] = after, v
+    return friction
 
 
 @kernel

@@ -1,6 +1,7 @@
 """The stress test's judge, its guard and its report, on cases that take no time."""
 
 import os
+import time
 from functools import partial
 
 import numpy as np
@@ -106,6 +107,28 @@ def test_a_process_that_dies_is_a_verdict_and_the_next_case_runs():
 
 def die(code, prepared):
     os._exit(code)
+
+
+def test_a_run_without_end_is_a_failure_and_a_busy_machine_is_none():
+    watch = guard.Guard(60.0)
+    try:
+        watch.judge(UNHEARD)  # starts the process
+        watch.patience = 1.0
+        assert "ZeroDivisionError" in watch.judge(Case("a", "b", SHORT, arrange=partial(wait, 2.0))).words
+        endless = watch.judge(Case("a", "b", SHORT, arrange=go_on))
+        assert (endless.kind, endless.words) == (verdict.FAIL, "no end after 1 s of computing")
+    finally:
+        watch.close()
+
+
+def wait(seconds, prepared):
+    time.sleep(seconds)
+    return 1 / 0
+
+
+def go_on(prepared):
+    while True:
+        pass
 
 
 def test_an_error_is_a_verdict():
