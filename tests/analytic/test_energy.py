@@ -66,16 +66,18 @@ def test_bar_swings_with_its_period_and_keeps_its_energy_better_on_finer_grids(b
 
 
 @pytest.mark.parametrize("volumetric_strain", ["point", "cell_mean"])
-def test_energy_balance_of_the_bar_closes_with_the_time_step(blocks, volumetric_strain):
-    fractions, errors = (0.1, 0.05, 0.025), []
-    for fraction in fractions:
+def test_bar_loses_less_the_shorter_the_step_and_its_stress_works_as_it_stores(blocks, volumetric_strain):
+    losses = []
+    for fraction in (0.4, 0.1, 0.025):
         bar = Bar(blocks, 0.25, fraction, volumetric_strain)
         now = bar.flight.until(PERIODS * bar.period)
-        # What the grid gains is what the stresses give, up to the first order of a scheme that is forward in velocity:
-        # so it is too with means over cells, where the mean pressure in the force is adjoint to the mean strain.
-        errors.append(abs(now.grid_gain + now.stress_work) / bar.start)
-    assert order(fractions, errors) == pytest.approx(1.0, abs=0.1)
-    assert errors[0] < 0.015
+        # Of a strain of 1e-3: the volume that the stored energy refers to changes by as much.
+        stored = elastic_energy(bar.flight.points, bar.scene.lame, bar.scene.shear)
+        assert now.stress_work == pytest.approx(stored, abs=1e-5 * bar.start)
+        losses.append(1.0 - (now.kinetic + now.stress_work) / bar.start)
+    # Measured 3, 1 and 0.4 %, with means over cells too, where the mean pressure in the force is adjoint to the mean
+    # strain: without it, energy grows.
+    assert 0.0 < losses[2] < 0.5 * losses[1] < 0.25 * losses[0] < 0.01
 
 
 @pytest.mark.parametrize("residual", [4.0, 12.0])

@@ -35,7 +35,10 @@ def after_a_turn(blocks):
 
     def turn(steps):
         angle, step = 2.0 * np.pi / steps, 1e-4
-        scene = blocks.launched(block, shift=(1.0, 1.0), height=5.0, gravity=0.0, courant=1.0, wave_speed=0.25 / step)
+        scene = blocks.launched(
+            block, shift=(1.0, 1.0), height=5.0, gravity=0.0, courant=1.0, wave_speed=0.25 / step,
+            dissipation_time=np.inf,
+        )  # fmt: skip
         scene = replace(scene, points=scene.points._replace(velocity=about_its_centre(scene, angle / step)))
         # The engine slows its steps for fast points; spinning a little faster makes up for it.
         fastest = np.hypot(*scene.points.velocity).max()
