@@ -118,8 +118,8 @@ VARIABLES = _table(
         "time_at_rest",
         "s",
         "model time at which the body came to rest",
-        "At rest: kinetic energy below 1e-3 of its maximum for 1 s of model time. Missing where it did not come to "
-        "rest before the end.",
+        "At rest: kinetic energy below 1e-3 of its maximum for 1 s of model time. What only swings elastically after "
+        "the last flow is damped. Missing where it did not come to rest before the end.",
     ),
     _quantity("step_count", "1", "number of time steps", "Time steps computed.", "int64"),
     _quantity(

@@ -223,7 +223,9 @@ class Time(Table):
     end_s: Positive = Field(description="Model time at which a realisation ends at the latest [s]")
     initial_stress: Literal["elastic"] = Field("elastic", description="How the initial stresses are found")
     scheme: Literal["explicit"] = Field("explicit", description="Time integration")
-    step_fraction: Positive = Field(0.8, le=1, description="Time step over the critical time step, cell over wave and point speed [1]")
+    step_fraction: Positive = Field(
+        0.8, le=1, description="Time step over the critical time step, cell over wave and point speed [1]"
+    )
 
 
 class Quantities(Table):
