@@ -30,16 +30,16 @@ scene; this one is never far from the front and fails on none. The reasons, with
   to rest. Kept as the limit of the default at a rate of zero.
 - *Orders*: with *MUSL* the points are strained by their updated velocities, mapped to the grid once more. With *stress
   last* linear shapes and GIMP blow up in an elastic block in the air, quadratic splines bear half the step, and the
-  run-out of the slope depends on the step eight times as much (`rfmpm benchmark slope`; 1.6 % over an eightfold step
-  against 0.2 %). *Stress first* is as good as MUSL in the air and makes energy where soil slides on a wall. So the
-  engine has MUSL alone; its second pass costs a fifth of a step and the step may be twice as long.
+  run-out of the slope falls as the step grows. *Stress first* is as good as MUSL in the air, and makes energy where
+  soil slides on a wall. So the engine has MUSL alone, whose second pass the longer step more than pays for.
 - *More points per cell* than four lower the error of splines on the column for a multiple of the time, raise that of
   linear shapes and GIMP there, and change little on the bar.
 
 Differences of run-out below its own uncertainty, which stands with its figure, decide nothing. The plain solver has no
 means over cells, so there its points differ from the engine's by more than the transfer.
 
-Errors and CPU times below are over those of quadratic B-splines with FLIP + FMPM(2) in 5 s, MUSL, on the same cells: geometric means over the grids, less than 1 is better.
+Errors and CPU times below are over those of quadratic B-splines with FLIP + FMPM(2) in 5 s, MUSL, on the same cells:
+geometric means over the grids, less than 1 is better.
 """
 
 SPEED = """## Speed
