@@ -82,6 +82,8 @@ CONSTANTS = {
     "as it is": {},
     "dissipation time halved": {"dissipation_time": 0.5},
     "dissipation time doubled": {"dissipation_time": 2.0},
+    "own share halved": {"own_share": 0.5},
+    "own share doubled": {"own_share": 2.0},
     "filter twice as often": {"filter_interval": 0.5},
     "filter half as often": {"filter_interval": 2.0},
     "softening averaged twice as often": {"average_interval": 0.5},

@@ -78,6 +78,7 @@ def build(study) -> Scene:
         average_interval=AVERAGE_SHARE * length / sqrt(shear / density) if length else inf,
         rest_fraction=REST_FRACTION,
         rest_time=REST_TIME,
+        own_share=axes.x.OWN_SHARE,
         settling_rate=0.0 if material.law == "elastic" else pi * sqrt(shear / density) / shape.outline[:, 1].max(),
         energy_scale=elastic_energy(points, lame, shear),
         growth_limit=GROWTH_LIMIT,

@@ -13,6 +13,7 @@ class Gimp(NamedTuple):
     """
 
     FEWEST_CELLS = 2
+    OWN_SHARE = 0.0  # of the grid in what strains the points: with any, an elastic block in the air blows up
 
     inverse_cell: float  # [1/m]
     cells: int

@@ -9,6 +9,7 @@ class Linear(NamedTuple):
     """Two nodes along one axis of `cells` cells between two walls."""
 
     FEWEST_CELLS = 1
+    OWN_SHARE = 0.0  # of the grid in what strains the points: with any, an elastic block in the air blows up
 
     inverse_cell: float  # [1/m]
     cells: int

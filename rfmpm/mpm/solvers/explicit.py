@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from rfmpm.kernel_tools import kernel
 from rfmpm.mpm.nonlocal_softening import average_softening
-from rfmpm.mpm.solvers.grid import clear, divide_straining, subtract_second_projection, update_grid
+from rfmpm.mpm.solvers.grid import clear, mix_straining, subtract_second_projection, update_grid
 from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNING, Progress
 from rfmpm.mpm.transfer import carry_points, project_twice, update_velocities
 
@@ -26,6 +26,7 @@ class Controls(NamedTuple):
     average_interval: float  # time from one average of the softening to the next [s]
     rest_fraction: float  # of the largest kinetic energy, below which a scene counts as quiet [-]
     rest_time: float  # quiet this long is at rest; calm this long is left with elastic swinging alone [s]
+    own_share: float  # of the grid's own velocity in what strains the points; the rest is theirs, mapped (MUSL) [-]
     settling_rate: float  # at which that swinging is then damped [1/s]
     energy_scale: float  # elastic energy at the start, when all points are still [J/m]
     growth_limit: float  # energy out of nothing that ends a run, as a share of the scale and of gravity's work [-]
@@ -57,7 +58,7 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
         update_velocities(points, axes, grid, grid.filtered, blend)
     else:
         update_velocities(points, axes, grid, None, blend)
-    friction = divide_straining(grid, box)
+    friction = mix_straining(grid, box, controls.own_share)
     clear(grid.parts, box)
     clear(grid.sums, box)
     moved = carry_points(points, law, history, axes, grid, cells, dt)

@@ -89,8 +89,11 @@ def subtract_second_projection(grid, box):
 
 
 @kernel
-def divide_straining(grid, box):
-    """Turn `grid.straining` from the momentum of the updated points into a velocity; what a wall holds stays held.
+def mix_straining(grid, box, own_share):
+    """Turn `grid.straining` from the momentum of the updated points into the velocity that strains them.
+
+    That is the velocity of this momentum, and a share of the grid's own, whose noise the strain then answers at once
+    and damps; what a wall holds stays held.
 
     The grid's own velocity goes beside it, so that the points read both at once.
 
@@ -103,13 +106,14 @@ def divide_straining(grid, box):
         for column in range(box[0], box[1] + 1):
             m, at_wall = grid.mass[row, column], row == 0 or column == 0 or column == last_column
             for k in range(2):
-                v, after = grid.flow[row, column, k], 0.0
+                v, mapped = grid.flow[row, column, k], 0.0
                 if m > 0.0 and v != 0.0:
-                    after = grid.straining[row, column, k] / m
+                    mapped = grid.straining[row, column, k] / m
                     if at_wall:
                         before = v - grid.flow[row, column, CHANGE_X + k]
-                        friction += 0.5 * grid.sums[row, column, k] * (before + after)
-                grid.straining[row, column, k], grid.straining[row, column, MOVING_X + k] = after, v
+                        friction += 0.5 * grid.sums[row, column, k] * (before + mapped)
+                grid.straining[row, column, k] = mapped + own_share * (v - mapped)
+                grid.straining[row, column, MOVING_X + k] = v
     return friction
 
 

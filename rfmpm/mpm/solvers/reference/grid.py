@@ -59,6 +59,16 @@ def hold_where_held(velocity, held):
 
 
 @kernel
+def mix(velocity, other, share):
+    """v <- (1 - share) v + share other."""
+    rows, columns = velocity.x.shape
+    for row in range(rows):
+        for column in range(columns):
+            velocity.x[row, column] += share * (other.x[row, column] - velocity.x[row, column])
+            velocity.y[row, column] += share * (other.y[row, column] - velocity.y[row, column])
+
+
+@kernel
 def add_term(nodes):
     """Next term of FMPM's series, and its sum: t <- t - S+ S t,  v* <- v* + t; not on walls, whose own v+ stays."""
     rows, columns = nodes.mass.shape

@@ -43,6 +43,7 @@ class Settings(NamedTuple):
     courant: float  # [-]
     dissipation_time: float  # time in which velocities relax to the filtered ones; 0: at once, inf: never [s]
     filter_interval: int  # steps
+    own_share: float  # [-]
 
 
 class Clock(NamedTuple):

@@ -5,7 +5,7 @@ from math import exp, inf
 import numpy as np
 
 from rfmpm.kernel_tools import kernel
-from rfmpm.mpm.solvers.reference.grid import add_term, clear, copy, divide, hold, hold_where_held, solve
+from rfmpm.mpm.solvers.reference.grid import add_term, clear, copy, divide, hold, hold_where_held, mix, solve
 from rfmpm.mpm.solvers.reference.points import (
     map_force,
     map_interpolated,
@@ -59,6 +59,7 @@ def step(now, points, carried, law, history, axes, nodes, walls, transfer, order
         map_momentum(points, carried, axes, nodes.mass, nodes.momentum, settings.cell)
         divide(nodes.straining, nodes.mass, nodes.momentum)
         hold_where_held(nodes.straining, nodes.velocity)
+        mix(nodes.straining, nodes.velocity, settings.own_share)
     if order != STRESS_FIRST:
         strain(points, law, history, axes, nodes.straining, dt)
     fastest, lost = move(points, axes, nodes.velocity, dt, SENSELESS * settings.wave_speed)
