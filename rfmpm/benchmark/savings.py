@@ -41,6 +41,8 @@ def _all(bench: skips.Bench) -> Iterator[skips.Saving]:
     yield skips.no_field(bench)
     for residual in (4.0, 8.0, 12.0):
         yield skips.stop_at_rest(bench, residual)
+    for residual in (4.0, 8.0, 12.0):
+        yield skips.damp_what_swings(bench, residual)
     yield skips.step_of_the_moment(bench)
     yield skips.filter_at_intervals(bench)
     yield skips.no_snapshots(bench)

@@ -86,10 +86,15 @@ class Bench:
         """One realisation as the program does it."""
         realisation.simulate(self.plain)
 
-    def with_controls(self, **changes) -> Prepared:
-        """The homogeneous slope with other numbers for the time integration."""
-        scene = self.plain.scene
-        return replace(self.plain, scene=replace(scene, controls=scene.controls._replace(**changes)))
+    def of_residual(self, residual: float) -> Prepared:
+        """The slope without a random strength, with another residual cohesion [kPa]."""
+        study = self.study.with_changes({"material.0.residual_cohesion_kpa": residual})
+        return replace(self.plain, study=study, scene=replace(self.plain.scene, material=study.material[0]))
+
+
+def with_controls(prepared: Prepared, **changes) -> Prepared:
+    """The same with other numbers of the time integration."""
+    return replace(prepared, scene=replace(prepared.scene, controls=prepared.scene.controls._replace(**changes)))
 
 
 def _seconds(work: Callable[[], Any]) -> float:
@@ -149,13 +154,25 @@ def no_field(bench: Bench) -> Saving:
 
 def stop_at_rest(bench: Bench, residual: float) -> Saving:
     """On to the end of the study's time, at rest or not."""
-    study = bench.study.with_changes({"material.0.residual_cohesion_kpa": residual})
-    plain = replace(bench.plain, study=study, scene=replace(bench.plain.scene, material=study.material[0]))
-    restless = replace(plain, scene=replace(plain.scene, controls=plain.scene.controls._replace(rest_time=inf)))
+    plain = bench.of_residual(residual)
     rest = realisation.simulate(plain).history["time"][-1]
-    times = bench.least(lambda: realisation.simulate(plain), lambda: realisation.simulate(restless))
-    remark = f"at rest or at its end after {rest:.3g} s of {study.time.end_s:g} s"
+    times = bench.least(
+        lambda: realisation.simulate(plain), lambda: realisation.simulate(with_controls(plain, rest_time=inf))
+    )
+    remark = f"at rest or at its end after {rest:.3g} s of {plain.study.time.end_s:g} s"
     return Saving(f"no steps after rest, residual cohesion {residual:g} kPa", *times, remark)
+
+
+def damp_what_swings(bench: Bench, residual: float) -> Saving:
+    """Waiting until what swings elastically after the last flow has come to rest by itself."""
+    plain = bench.of_residual(residual)
+    swinging = with_controls(plain, settling_rate=0.0)
+    settled, rung = realisation.simulate(plain), realisation.simulate(swinging)
+    times = bench.least(lambda: realisation.simulate(plain), lambda: realisation.simulate(swinging))
+    moved = 1e3 * abs(settled.quantities["run_out"] - rung.quantities["run_out"])
+    ends = [outcome.history["time"][-1] for outcome in (settled, rung)]
+    remark = f"ends after {ends[0]:.3g} instead of {ends[1]:.3g} s; run-out differs by {moved:.1f} mm"
+    return Saving(f"swinging after the last flow damped, residual cohesion {residual:g} kPa", *times, remark)
 
 
 def step_of_the_moment(bench: Bench) -> Saving:
@@ -174,7 +191,7 @@ def step_of_the_moment(bench: Bench) -> Saving:
 
 def filter_at_intervals(bench: Bench) -> Saving:
     """The filter of the transfer at every step."""
-    times = bench.least(bench.simulate, lambda: realisation.simulate(bench.with_controls(filter_interval=1)))
+    times = bench.least(bench.simulate, lambda: realisation.simulate(with_controls(bench.plain, filter_interval=1)))
     remark = f"every {bench.plain.scene.controls.filter_interval} steps against every step"
     return Saving("filter at intervals, at the same rate", *times, remark)
 
