@@ -79,7 +79,7 @@ def build(study) -> Scene:
         rest_fraction=REST_FRACTION,
         rest_time=REST_TIME,
         own_share=axes.x.OWN_SHARE,
-        settling_rate=0.0 if material.law == "elastic" else pi * sqrt(shear / density) / shape.outline[:, 1].max(),
+        settling_rate=0.0 if material.law == "elastic" else _critical_rate(shape, sqrt(shear / density)),
         energy_scale=elastic_energy(points, lame, shear),
         growth_limit=GROWTH_LIMIT,
     )
@@ -155,6 +155,11 @@ def crest_edge_x(study) -> float:
 def domain_size(study) -> tuple[float, float]:
     """Length and height of the domain [m]."""
     return body(study).length, body(study).top
+
+
+def _critical_rate(shape: Body, shear_wave_speed: float) -> float:
+    """Rate that damps the body's slowest swing critically: a quarter of a shear wave over its height [1/s]."""
+    return pi * shear_wave_speed / shape.outline[:, 1].max()
 
 
 def _wall(boundary):
