@@ -107,7 +107,11 @@ def sliding(quick: bool) -> Row:
     cell, until = 0.0125, 0.1 if quick else 1.0
     block = elastic_block(0.1, 0.05, cell, "quadratic_bspline", 4, 1000.0, 1e6, 0.3)
     study = block.with_changes(
-        {"geometry.foreland_m": 1.5, "boundary.base": {"kind": "friction", "coefficient": FRICTION}}
+        {
+            "geometry.foreland_m": 1.5,
+            "boundary.base": {"kind": "friction", "coefficient": FRICTION},
+            "time.step_fraction": 0.4,
+        }
     )
     scene = scenes.build(study)
     first = scene.points
@@ -121,6 +125,9 @@ def sliding(quick: bool) -> Row:
     own, now = scenes.release(scene, None), start()
     arguments, pull = scenes.arguments(scene, own), GRAVITY * sin(INCLINE)
     x0 = np.average(own.points.position.x, weights=own.points.mass)
+    # Velocities belong to the middle of a step: the first one has friction for a whole step and the pull for none.
+    step = controls.courant * cell / controls.wave_speed
+    own.points.velocity.x[:] += 0.5 * step * (pull + FRICTION * controls.gravity)
     while now.time < until:
         before = now.time
         now = advance(now, np.nextafter(before, inf), *arguments)
@@ -128,7 +135,12 @@ def sliding(quick: bool) -> Row:
     moved = np.average(own.points.position.x, weights=own.points.mass) - x0
     exact = 0.5 * GRAVITY * now.time**2 * (sin(INCLINE) - FRICTION * cos(INCLINE))
     words = f"{moved:.4f} m, error {moved / exact - 1.0:+.1e}"
-    return Row("sliding block on an incline", f"24 degrees, mu = tan 15, {until} s", f"{exact:.4f} m", words)
+    return Row(
+        "sliding block on an incline",
+        f"24 degrees, mu = tan 15, {until} s, 0.4 of the critical step",
+        f"{exact:.4f} m",
+        words,
+    )
 
 
 def bars(quick: bool) -> Row:
