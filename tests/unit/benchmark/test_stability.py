@@ -56,7 +56,7 @@ def test_a_refusal_is_right_only_where_it_names_the_key():
 
 
 def test_a_run_beyond_the_critical_step_is_stopped_and_its_advice_put_to_the_test():
-    beyond = partial(arrangements.beyond_the_critical_step, 2.0)
+    beyond = partial(arrangements.beyond_the_critical_step, 4.0)
     stopped = verdict.judge(Case("a", "b", SHORT, arrange=beyond, may_stop=True))
     assert stopped.kind == verdict.STOPPED
     # The step is forced, so that the smaller one of the advice is none.
