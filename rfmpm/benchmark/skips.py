@@ -12,7 +12,7 @@ import numpy as np
 
 from rfmpm import realisation
 from rfmpm.benchmark.field_cost import prepare_field, realise_field
-from rfmpm.benchmark.stability.case import SLOPE
+from rfmpm.benchmark.stability.case import SLOPE, random_strength
 from rfmpm.kernel_tools import Tensor
 from rfmpm.mpm import scene as scenes
 from rfmpm.mpm.initial_stress import elastic_gravity_stress
@@ -23,14 +23,6 @@ from rfmpm.mpm.state import start
 from rfmpm.realisation import Prepared
 from rfmpm.study import Study
 
-FIELD = {
-    "material": "clay",
-    "distribution": "lognormal",
-    "coefficient_of_variation": 0.25,
-    "correlation": "markov_separable",
-    "scale_of_fluctuation_h_m": 6.0,
-    "scale_of_fluctuation_v_m": 1.0,
-}
 HEAVY = "import numba, scipy, xarray, netCDF4, pandas, matplotlib.figure, mpi4py, jinja2; "
 FRAMES = 60
 STILL = 1e-3  # [m] of movement, and of plastic strain [-]
@@ -71,7 +63,11 @@ class Bench:
 
     def __init__(self, cell: float, end: float, repeats: int):
         self.repeats = repeats
-        changes = {"discretisation.cell_m": cell, "time.end_s": end, "random_field.cohesion": FIELD}
+        changes = {
+            "discretisation.cell_m": cell,
+            "time.end_s": end,
+            "random_field.cohesion": random_strength(0.25, 6.0, 1.0),
+        }
         self.study = Study(**SLOPE).with_changes(changes)
         self.random = realisation.prepare(self.study)
         self.plain = replace(self.random, fields={})

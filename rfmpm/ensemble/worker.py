@@ -4,7 +4,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -111,11 +111,10 @@ class Worker:
         writer = SegmentWriter(self.directory, self.study, rank)
         error = ""
         try:
-            with self.stop.listening(), threadpool_limits(limits=1):
+            # A signal abandons the realisation at hand to a later run; the last report says so.
+            with suppress(Abandoned), self.stop.listening(), threadpool_limits(limits=1):
                 self.prepare()
                 self._loop(writer, claim)
-        except Abandoned:
-            pass  # a signal: the last report says so, and the realisation at hand is left to a later run
         except Exception as failure:
             error = _described(failure)
         try:

@@ -67,6 +67,7 @@ def _write(path: Path, array: np.ndarray) -> None:
             file.flush()
             os.fsync(file.fileno())
         os.replace(temporary, path)
-    except BaseException:
+    except OSError as error:
+        raise OSError(f"{path.parent}: {error}") from error
+    finally:
         temporary.unlink(missing_ok=True)
-        raise

@@ -9,7 +9,6 @@ from rfmpm.realisation import Prepared
 from rfmpm.study import Study
 
 CELL = 0.5  # [m]
-STEP_FRACTION = 0.8  # of the critical time step, the default of a study
 
 # The short slope of the main study on coarse cells: a run takes a fraction of a second.
 SLOPE = {
@@ -31,7 +30,7 @@ SLOPE = {
             "viscosity_kpa_s": 0.3,
         }
     ],
-    "time": {"end_s": 20.0, "step_fraction": STEP_FRACTION},
+    "time": {"end_s": 20.0},
     "output": {"directory": "unused"},
 }
 ELASTIC = {
@@ -41,6 +40,18 @@ ELASTIC = {
     "youngs_modulus_kpa": 1000.0,
     "poissons_ratio": 0.33,
 }
+
+
+def random_strength(cov: float, scale_h: float, scale_v: float) -> dict[str, Any]:
+    """Table of a lognormal cohesion: coefficient of variation, scales of fluctuation [m]."""
+    return {
+        "material": "clay",
+        "distribution": "lognormal",
+        "coefficient_of_variation": cov,
+        "correlation": "markov_separable",
+        "scale_of_fluctuation_h_m": scale_h,
+        "scale_of_fluctuation_v_m": scale_v,
+    }
 
 
 def block(width: float, height: float, foreland: float) -> dict[str, Any]:

@@ -5,10 +5,11 @@ from functools import partial
 from itertools import product
 
 from rfmpm.benchmark.stability import arrangements
-from rfmpm.benchmark.stability.case import CELL, ELASTIC, STEP_FRACTION, Case, Sweep, block
+from rfmpm.benchmark.stability.case import CELL, ELASTIC, SLOPE, Case, Sweep, block, random_strength
 from rfmpm.benchmark.stability.soils import random_soils
 from rfmpm.mpm.boundary import WALLS
 from rfmpm.mpm.shapes import SHAPES
+from rfmpm.study import Study
 
 SNAP_BACK = 325.573  # [kPa] softening modulus of the slope at which stress falls as fast as the soil can unload
 LONG_STEPS = 1_000_000
@@ -141,7 +142,7 @@ def strength_contrast() -> Sweep:
         Case(
             pattern,
             f"{ratio:g}",
-            {"random_field.cohesion": _field(0.5, 6.0, 1.0)},
+            {"random_field.cohesion": random_strength(0.5, 6.0, 1.0)},
             arrange=partial(arrangements.contrast, pattern, ratio),
         )
         for pattern, ratio in product(patterns, (1.0, 10.0, 100.0, 1e3, 1e4, 1e6))
@@ -153,7 +154,7 @@ def variability() -> Sweep:
     """Coefficient of variation against the scale of fluctuation, down to far below a cell; two realisations each."""
     scales = {f"{in_cells:g}": in_cells * CELL for in_cells in (0.01, 0.2, 0.5, 1.0, 4.0, 20.0, 1000.0)}
     cases = [
-        Case(f"{cov:g}", column, {"random_field.cohesion": _field(cov, scale, scale)}, index)
+        Case(f"{cov:g}", column, {"random_field.cohesion": random_strength(cov, scale, scale)}, index)
         for cov, (column, scale), index in product((0.1, 0.25, 0.5, 0.75, 1.0, 2.0), scales.items(), range(2))
     ]
     return Sweep("variability", "Random strength", "coefficient of variation", "scale of fluctuation over cell", cases)
@@ -223,10 +224,10 @@ def long_run() -> Sweep:
     rates = _each("discretisation.dissipation_time_s", (float("inf"), 5.0), "{:g} s")
     rows = {f"{name}, {soil}": shape | soils[soil] for name, shape in _all_shapes().items() for soil in soils}
     base = {"geometry": block(1.5, 1.0, 1.0)}
-    cases = []
+    cases, fraction = [], Study(**SLOPE).time.step_fraction
     for row, column, changes in _table(rows, rates):
         wave_speed = 27.0  # [m/s], rounded down so that the steps are more than asked
-        end = 1.03 * LONG_STEPS * STEP_FRACTION * CELL / wave_speed
+        end = 1.03 * LONG_STEPS * fraction * CELL / wave_speed
         cases.append(Case(row, column, base | changes | {"time.end_s": end}, arrange=arrangements.never_at_rest))
     return Sweep("long_run", "A million steps", "shape, soil", "dissipation time", cases)
 
@@ -236,15 +237,4 @@ def _strength(peak: float, residual: float, softening: float) -> dict:
         "material.0.cohesion_kpa": peak,
         "material.0.residual_cohesion_kpa": residual,
         "material.0.softening_modulus_kpa": softening,
-    }
-
-
-def _field(cov: float, scale_h: float, scale_v: float) -> dict:
-    return {
-        "material": "clay",
-        "distribution": "lognormal",
-        "coefficient_of_variation": cov,
-        "correlation": "markov_separable",
-        "scale_of_fluctuation_h_m": scale_h,
-        "scale_of_fluctuation_v_m": scale_v,
     }

@@ -130,11 +130,11 @@ def test_a_store_that_cannot_be_written_is_an_error(settings, points, tmp_path):
         prepare(settings, MEAN, points, tmp_path / "store")
 
 
-def test_an_interrupted_write_leaves_no_file(settings, points, tmp_path, monkeypatch):
+def test_an_interrupted_write_leaves_no_file_and_names_the_folder(settings, points, tmp_path, monkeypatch):
     def full(file, array):
         raise OSError("no space left")
 
     monkeypatch.setattr(field_store.np, "save", full)
-    with pytest.raises(OSError, match="no space left"):
+    with pytest.raises(OSError, match=f"{tmp_path}: no space left"):
         prepare(settings, MEAN, points, tmp_path)
     assert list(tmp_path.iterdir()) == []
