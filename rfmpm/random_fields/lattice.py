@@ -95,7 +95,7 @@ def _common_measure(gaps: np.ndarray, smallest: float, least: float) -> float | 
     # Euclid's algorithm on the gaps; a remainder below a thousandth of the smallest gap is rounding. None below least.
     measure = float(smallest)
     for gap in gaps:
-        a, b = max(gap, measure), min(gap, measure)
+        a, b = gap, measure
         while b > 1e-3 * smallest:
             a, b = b, abs(a - b * round(a / b))
         measure = a

@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import cos, inf, sin
+from typing import ClassVar
 
 import numpy as np
 
@@ -18,6 +19,7 @@ class Anisotropy(ABC):
         theta_h: scale of fluctuation along the h axis [m].
         theta_v: scale of fluctuation across the h axis [m].
         rotation: angle of the h axis from the x axis, counter-clockwise [rad].
+        separable: whether the correlation is the product of one along its h axis and one along its v axis.
 
     Raises:
         ValueError: a scale is not positive and finite, or the angle is not finite.
@@ -26,6 +28,7 @@ class Anisotropy(ABC):
     theta_h: float
     theta_v: float
     rotation: float = 0.0
+    separable: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         for name in ("theta_h", "theta_v"):

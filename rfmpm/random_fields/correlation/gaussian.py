@@ -9,6 +9,8 @@ from rfmpm.random_fields.correlation.anisotropy import Anisotropy
 
 
 class Gaussian(Anisotropy):
+    separable = True
+
     def rho(self, lag_x: np.ndarray, lag_y: np.ndarray) -> np.ndarray:
         h, v = self.relative_lags(lag_x, lag_y)
         return np.exp(-np.pi * (h * h + v * v))

@@ -1,5 +1,6 @@
 """Field by the Cholesky factor of the covariance between all points: exact on any set of up to about 5000 points."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -41,13 +42,11 @@ class Cholesky:
         Raises:
             ValueError: the matrix is not positive definite even with the largest nugget.
         """
-        for nugget in NUGGETS:
-            lower = _lower_factor(correlation, points, nugget)
-            if lower is not None:
-                return CholeskyRecord(lower, np.array(nugget))
-        raise ValueError(
-            f"{correlation} is not positive definite on these {len(points)} points, even with a nugget of {NUGGETS[-1]}"
-        )
+        try:
+            lower, nugget = factor(lambda: _lower_covariance(correlation, points))
+        except ValueError as error:
+            raise ValueError(f"cholesky: {correlation} on these {len(points)} points: {error}") from error
+        return CholeskyRecord(lower, np.array(nugget))
 
     @staticmethod
     def n_variables(record: CholeskyRecord) -> int:
@@ -73,20 +72,34 @@ class Cholesky:
         return bool(np.all(np.abs(variance - 1.0 - nugget) < n * 1e-14))
 
 
-def _lower_factor(correlation: Anisotropy, points: np.ndarray, nugget: float) -> np.ndarray | None:
+def factor(make_covariance: Callable[[], np.ndarray]) -> tuple[np.ndarray, float]:
+    """Lower Cholesky factor of a covariance with the smallest nugget of `NUGGETS` on its diagonal that allows it.
+
+    Args:
+        make_covariance: makes the matrix, shape (n, n), of which only the lower triangle is read; it is overwritten.
+
+    Returns:
+        the factor, shape (n, n), C order, and the nugget.
+
+    Raises:
+        ValueError: the matrix is not positive definite even with the largest nugget.
+    """
     import scipy.linalg  # late: commands that make no field do not pay for it
 
-    covariance = _lower_covariance(correlation, points, nugget)
-    try:
-        with single_blas_thread():
-            # The upper triangle of the transposed view, factored in place, is the lower factor in C order.
-            upper = scipy.linalg.cholesky(covariance.T, lower=False, overwrite_a=True, check_finite=False)
-    except scipy.linalg.LinAlgError:
-        return None
-    return np.ascontiguousarray(upper.T)
+    for nugget in NUGGETS:
+        covariance = make_covariance()
+        covariance[np.diag_indices(len(covariance))] += nugget
+        try:
+            with single_blas_thread():
+                # The upper triangle of the transposed view, factored in place, is the lower factor in C order.
+                upper = scipy.linalg.cholesky(covariance.T, lower=False, overwrite_a=True, check_finite=False)
+        except scipy.linalg.LinAlgError:
+            continue
+        return np.ascontiguousarray(upper.T), nugget
+    raise ValueError(f"not positive definite, even with a nugget of {NUGGETS[-1]}; take another correlation or scale")
 
 
-def _lower_covariance(correlation: Anisotropy, points: np.ndarray, nugget: float) -> np.ndarray:
+def _lower_covariance(correlation: Anisotropy, points: np.ndarray) -> np.ndarray:
     # Block rows up to the diagonal alone: the temporaries stay small and the factorisation reads nothing above it.
     n = len(points)
     covariance = np.empty((n, n))
@@ -94,5 +107,4 @@ def _lower_covariance(correlation: Anisotropy, points: np.ndarray, nugget: float
         stop = min(start + ROWS_AT_ONCE, n)
         lag = points[start:stop, None, :] - points[None, :stop, :]
         covariance[start:stop, :stop] = correlation.rho(lag[..., 0], lag[..., 1])
-    covariance[np.diag_indices(n)] += nugget
     return covariance
