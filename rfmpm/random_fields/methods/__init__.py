@@ -2,6 +2,7 @@
 
 from rfmpm.random_fields.methods.ar1 import Ar1
 from rfmpm.random_fields.methods.cholesky import Cholesky
+from rfmpm.random_fields.methods.circulant import Circulant
 from rfmpm.random_fields.methods.kronecker import Kronecker
 from rfmpm.random_fields.methods.protocol import FieldMethod
 
@@ -9,4 +10,5 @@ METHODS: dict[str, type[FieldMethod]] = {
     "cholesky": Cholesky,
     "kronecker": Kronecker,
     "ar1": Ar1,
+    "circulant": Circulant,
 }

@@ -8,7 +8,7 @@ import numpy as np
 from rfmpm.kernel_tools import kernel
 from rfmpm.random_fields.correlation import Anisotropy
 from rfmpm.random_fields.lattice import Lattice, require_lattice
-from rfmpm.random_fields.methods.nodes import is_index_of, node_numbers, pick
+from rfmpm.random_fields.methods.nodes import is_aligned, is_index_of, node_numbers, pick
 
 IDENTITY = 1e-12  # rounding of a power of the correlation at one spacing
 
@@ -91,15 +91,6 @@ def is_markov(correlation: Anisotropy, lattice: Lattice) -> bool:
     powers = [values[min(1, count - 1)] ** np.arange(count) for values, count in along]
     near = all(np.all(np.abs(v - p) <= IDENTITY) for (v, _), p in zip(along, powers, strict=True))
     return bool(near and np.all(np.abs(ends - powers[0][-1] * powers[1][-1]) <= IDENTITY))
-
-
-def is_aligned(correlation: Anisotropy) -> bool:
-    """Whether the axes of the correlation are those of the lattice: turned by no or by a whole number of right angles.
-
-    A right angle in radians is itself rounded; what that turns is less than a rounding of the lags.
-    """
-    turns = correlation.rotation / (0.5 * np.pi)
-    return abs(turns - round(turns)) < 1e-15 * max(1.0, abs(turns))
 
 
 @kernel

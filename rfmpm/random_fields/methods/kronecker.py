@@ -7,9 +7,8 @@ import numpy as np
 from rfmpm.kernel_tools.threads import single_blas_thread
 from rfmpm.random_fields.correlation import Anisotropy
 from rfmpm.random_fields.lattice import Lattice, require_lattice
-from rfmpm.random_fields.methods.ar1 import is_aligned
 from rfmpm.random_fields.methods.cholesky import factor
-from rfmpm.random_fields.methods.nodes import is_index_of, node_numbers, pick
+from rfmpm.random_fields.methods.nodes import is_aligned, is_index_of, node_numbers, pick
 
 
 class KroneckerRecord(NamedTuple):

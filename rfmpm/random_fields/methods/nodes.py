@@ -1,7 +1,8 @@
-"""From the nodes of a lattice to the points on it, for every method that makes whole lattices."""
+"""What every method on a lattice shares: from nodes to points, and whether a correlation lies along the lattice."""
 
 import numpy as np
 
+from rfmpm.random_fields.correlation import Anisotropy
 from rfmpm.random_fields.lattice import Lattice
 
 
@@ -26,3 +27,12 @@ def is_index_of(index: np.ndarray, shape: np.ndarray, points: np.ndarray) -> boo
     if len(index) == 0:
         return count == len(points)
     return len(index) == len(points) and int(index.min()) >= 0 and int(index.max()) < count
+
+
+def is_aligned(correlation: Anisotropy) -> bool:
+    """Whether the axes of the correlation are those of the lattice: turned by no or by a whole number of right angles.
+
+    A right angle in radians is itself rounded; what that turns is less than a rounding of the lags.
+    """
+    turns = correlation.rotation / (0.5 * np.pi)
+    return abs(turns - round(turns)) < 1e-15 * max(1.0, abs(turns))
