@@ -19,7 +19,7 @@ LOWEST_PARAMETER = 0.2  # below, most of the mass sticks to the bounds
 
 @dataclass(frozen=True)
 class Beta(Distribution):
-    """Beta distribution: parameters alpha at the lower bound, beta at the upper one [-]; bounds in the unit of the field."""
+    """Beta distribution: alpha at the lower bound, beta at the upper one [-]; bounds in the unit of the field."""
 
     alpha: float
     beta: float

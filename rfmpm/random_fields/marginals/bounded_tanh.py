@@ -45,7 +45,7 @@ class BoundedTanh(Distribution):
         def excess(log_spread: float) -> float:
             spread = np.exp(log_spread)
             value = _unit_value(_location(spread, place), spread, NODES)
-            return float(WEIGHTS @ (value - place) ** 2) / variance - 1.0
+            return float(np.sum(WEIGHTS * (value - place) ** 2)) / variance - 1.0
 
         spread = float(np.exp(brentq(excess, log(variance), log(200.0), xtol=1e-14)))
         return cls(_location(spread, place), spread, mean * lower_over_mean, mean * upper_over_mean)
@@ -68,4 +68,4 @@ def _location(spread: float, place: float) -> float:
     from scipy.optimize import brentq
 
     reach = 10.0 * spread + 40.0 * pi
-    return brentq(lambda m: float(WEIGHTS @ _unit_value(m, spread, NODES)) - place, -reach, reach, xtol=1e-13)
+    return brentq(lambda m: float(np.sum(WEIGHTS * _unit_value(m, spread, NODES))) - place, -reach, reach, xtol=1e-13)

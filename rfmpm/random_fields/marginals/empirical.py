@@ -72,8 +72,8 @@ class Empirical(Distribution):
 def _spread(logarithm: np.ndarray) -> tuple[float, float]:
     # Mean and coefficient of variation of the exponential of a function of the standard-normal `NODES`.
     value = np.exp(logarithm)
-    mean = float(WEIGHTS @ value)
-    return mean, sqrt(float(WEIGHTS @ (value / mean - 1.0) ** 2))
+    mean = float(np.sum(WEIGHTS * value))
+    return mean, sqrt(float(np.sum(WEIGHTS * (value / mean - 1.0) ** 2)))
 
 
 def _positions(count: int) -> np.ndarray:
