@@ -49,6 +49,32 @@ def test_positive_definite_on_random_points(kernel, rotation):
 
 
 @every_correlation
+@pytest.mark.parametrize("rotation", [0.0, 0.5])
+def test_a_separable_correlation_is_the_product_along_its_axes(kernel, rotation):
+    correlation = kernel(THETA_H, THETA_V, rotation)
+    h, v = random_points(100).T - 2.0
+    cosine, sine = np.cos(rotation), np.sin(rotation)
+    rho = correlation.rho(cosine * h - sine * v, sine * h + cosine * v)
+    along_axes = correlation.rho(cosine * h, sine * h) * correlation.rho(-sine * v, cosine * v)
+    # Identity: rounding of lags of 10 theta that are turned and turned back; the correlations are at most one.
+    if correlation.separable:
+        np.testing.assert_allclose(rho, along_axes, rtol=0, atol=1e-13)
+        np.testing.assert_allclose(rho, correlation.rho_h(h) * correlation.rho_v(v), rtol=0, atol=1e-13)
+    else:
+        assert np.max(np.abs(rho - along_axes)) > 0.01
+
+
+@every_correlation
+@pytest.mark.parametrize(("theta_h", "theta_v"), [(1000.0, 1.0), (0.05, 0.05), (500.0, 500.0)])
+def test_positive_definite_at_extreme_scales(kernel, theta_h, theta_v):
+    points = random_points(200)
+    covariance = matrix(kernel(theta_h, theta_v, 0.3), points)
+    assert np.all(np.isfinite(covariance))
+    # Identity up to the rounding of n eigenvalues.
+    assert np.linalg.eigvalsh(covariance)[0] > -1e-10 * len(points)
+
+
+@every_correlation
 def test_a_quarter_turn_swaps_the_axes(kernel):
     x, y = random_points(100).T
     turned = kernel(THETA_H, THETA_V, np.pi / 2).rho(x, y)

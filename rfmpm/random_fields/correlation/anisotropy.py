@@ -53,3 +53,42 @@ class Anisotropy(ABC):
         """Lags along the h axis and across it, each divided by its scale of fluctuation [-]."""
         cosine, sine = cos(self.rotation), sin(self.rotation)
         return (cosine * lag_x + sine * lag_y) / self.theta_h, (cosine * lag_y - sine * lag_x) / self.theta_v
+
+
+class Separable(Anisotropy):
+    """The product of a correlation along the h axis and the same one, with its own scale, along the v axis.
+
+    Both factors are correlations on a line, so the product is positive definite in the plane.
+    """
+
+    separable = True
+
+    @abstractmethod
+    def profile(self, lag: np.ndarray) -> np.ndarray:
+        """Correlation on a line at lags divided by the scale of fluctuation, any shape [-]."""
+
+    def rho(self, lag_x: np.ndarray, lag_y: np.ndarray) -> np.ndarray:
+        """Correlation at a lag; see `Anisotropy.rho`."""
+        h, v = self.relative_lags(lag_x, lag_y)
+        return self.profile(h) * self.profile(v)
+
+    def rho_h(self, lag: np.ndarray) -> np.ndarray:
+        """Correlation at lags along the h axis, any shape [m]."""
+        return self.profile(np.asarray(lag) / self.theta_h)
+
+    def rho_v(self, lag: np.ndarray) -> np.ndarray:
+        """Correlation at lags along the v axis, any shape [m]."""
+        return self.profile(np.asarray(lag) / self.theta_v)
+
+
+class Ellipsoidal(Anisotropy):
+    """The same at all lags on an ellipse whose axes are as the scales of fluctuation; isotropic for equal scales."""
+
+    @abstractmethod
+    def profile(self, lag: np.ndarray) -> np.ndarray:
+        """Correlation at the length of lags divided by their scales of fluctuation, at least zero, any shape [-]."""
+
+    def rho(self, lag_x: np.ndarray, lag_y: np.ndarray) -> np.ndarray:
+        """Correlation at a lag; see `Anisotropy.rho`."""
+        h, v = self.relative_lags(lag_x, lag_y)
+        return self.profile(np.sqrt(h * h + v * v))

@@ -5,12 +5,9 @@ Vanmarcke (1983), Random Fields: Analysis and Synthesis. Separable and, for equa
 
 import numpy as np
 
-from rfmpm.random_fields.correlation.anisotropy import Anisotropy
+from rfmpm.random_fields.correlation.anisotropy import Separable
 
 
-class Gaussian(Anisotropy):
-    separable = True
-
-    def rho(self, lag_x: np.ndarray, lag_y: np.ndarray) -> np.ndarray:
-        h, v = self.relative_lags(lag_x, lag_y)
-        return np.exp(-np.pi * (h * h + v * v))
+class Gaussian(Separable):
+    def profile(self, lag: np.ndarray) -> np.ndarray:
+        return np.exp(-np.pi * lag * lag)

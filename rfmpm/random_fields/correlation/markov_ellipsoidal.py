@@ -5,10 +5,9 @@ Fenton and Griffiths (2008), Risk Assessment in Geotechnical Engineering. Isotro
 
 import numpy as np
 
-from rfmpm.random_fields.correlation.anisotropy import Anisotropy
+from rfmpm.random_fields.correlation.anisotropy import Ellipsoidal
 
 
-class MarkovEllipsoidal(Anisotropy):
-    def rho(self, lag_x: np.ndarray, lag_y: np.ndarray) -> np.ndarray:
-        h, v = self.relative_lags(lag_x, lag_y)
-        return np.exp(-2.0 * np.sqrt(h * h + v * v))
+class MarkovEllipsoidal(Ellipsoidal):
+    def profile(self, lag: np.ndarray) -> np.ndarray:
+        return np.exp(-2.0 * lag)

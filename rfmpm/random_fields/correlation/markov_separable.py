@@ -5,12 +5,9 @@ Vanmarcke (1983), Random Fields: Analysis and Synthesis. Not isotropic even for 
 
 import numpy as np
 
-from rfmpm.random_fields.correlation.anisotropy import Anisotropy
+from rfmpm.random_fields.correlation.anisotropy import Separable
 
 
-class MarkovSeparable(Anisotropy):
-    separable = True
-
-    def rho(self, lag_x: np.ndarray, lag_y: np.ndarray) -> np.ndarray:
-        h, v = self.relative_lags(lag_x, lag_y)
-        return np.exp(-2.0 * (np.abs(h) + np.abs(v)))
+class MarkovSeparable(Separable):
+    def profile(self, lag: np.ndarray) -> np.ndarray:
+        return np.exp(-2.0 * np.abs(lag))

@@ -1,44 +1,15 @@
-"""The marginal distributions a study can name: a standard-normal value in, a positive physical value out.
+"""Normal distribution truncated at zero.
 
-The two parameters are chosen such that the variable has the asked mean and standard deviation themselves.
+Johnson, Kotz and Balakrishnan (1994), Continuous Univariate Distributions 1, section 13.10.1.
 """
 
 from dataclasses import dataclass
-from math import inf, log, log1p, pi, sqrt
-from typing import Protocol, Self
+from math import log, pi, sqrt
+from typing import Self
 
 import numpy as np
 
-
-class Marginal(Protocol):
-    """A distribution with a given mean and coefficient of variation."""
-
-    @classmethod
-    def from_moments(cls, mean: float, coefficient_of_variation: float) -> Self:
-        """The distribution with this mean (its unit is the unit of the field) and coefficient of variation [-]."""
-
-    def transform(self, z: np.ndarray) -> np.ndarray:
-        """The value with the same probability of non-exceedance as the standard-normal `z`, same shape."""
-
-
-@dataclass(frozen=True)
-class Lognormal:
-    """Lognormal: the logarithm is normal with s^2 = ln(1 + V^2), m = ln(mean) - s^2 / 2."""
-
-    log_mean: float
-    log_standard_deviation: float
-
-    @classmethod
-    def from_moments(cls, mean: float, coefficient_of_variation: float) -> Self:
-        """Match the mean (> 0) and the coefficient of variation (> 0); ValueError otherwise."""
-        _check_moments(mean, coefficient_of_variation, inf)
-        log_variance = log1p(coefficient_of_variation**2)
-        return cls(log(mean) - 0.5 * log_variance, sqrt(log_variance))
-
-    def transform(self, z: np.ndarray) -> np.ndarray:
-        """Lognormal values, same shape as the standard-normal `z`."""
-        return np.exp(self.log_mean + self.log_standard_deviation * z)
-
+from rfmpm.random_fields.marginals.protocol import Distribution, check_moments
 
 # A normal truncated at zero tends to the exponential distribution, whose coefficient of variation is 1, as its parent
 # moves to minus infinity. Near that limit the parameters lose their digits; short of it all is accurate.
@@ -46,14 +17,12 @@ HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION = 0.99
 
 
 @dataclass(frozen=True)
-class NormalTruncated:
+class NormalTruncated(Distribution):
     """Normal kept where it is positive: the mean and standard deviation asked for are those after the truncation.
 
     Attributes:
         scale: standard deviation of the parent normal.
         bound: the truncation, zero, in parent standard deviations from the parent mean [-].
-
-    Source: Johnson, Kotz and Balakrishnan (1994), Continuous Univariate Distributions 1, section 13.10.1.
     """
 
     scale: float
@@ -64,7 +33,7 @@ class NormalTruncated:
         """Match the mean (> 0) and the coefficient of variation (> 0, < 0.99); ValueError otherwise."""
         from scipy.optimize import brentq  # late: scipy only where a study asks for this distribution
 
-        _check_moments(mean, coefficient_of_variation, HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION)
+        check_moments(mean, coefficient_of_variation, HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION)
 
         def excess(bound: float) -> float:
             first, second = _truncated_moments(bound)
@@ -96,13 +65,3 @@ def _truncated_moments(bound: float) -> tuple[float, float]:
     hazard = sqrt(2.0 / pi) / float(erfcx(bound / sqrt(2.0)))
     first = hazard - bound
     return first, sqrt(1.0 - hazard * first)
-
-
-def _check_moments(mean: float, coefficient_of_variation: float, limit: float) -> None:
-    if not 0 < mean < inf:
-        raise ValueError(f"mean = {mean}: must be positive and finite")
-    if not 0 < coefficient_of_variation < limit:
-        raise ValueError(f"coefficient_of_variation = {coefficient_of_variation}: must lie between 0 and {limit}")
-
-
-MARGINALS: dict[str, type[Marginal]] = {"lognormal": Lognormal, "normal_truncated": NormalTruncated}
