@@ -4,7 +4,7 @@
 
 with z at the points from the method, z_d the same realisation at the places of the data, C the correlation, E the
 variances of the errors of measurement and e an error drawn from them. Mean and covariance are then the conditional ones
-exactly (Journel and Huijbregts 1978, Mining Geostatistics, VII.A.1; Doucet 2010), if z_d has its right covariance with z.
+exactly (Journel and Huijbregts 1978, Mining Geostatistics, VII.A.1), if z_d has its right covariance with z.
 
 A datum on a point takes the value of the point. Elsewhere z_d is drawn given the values at nearby points: kriged from
 them, plus a residual with the covariance that is left, correlated between the data. Neighbours are added until the
@@ -139,8 +139,8 @@ def _solver(matrix: np.ndarray):
 def _check_misfit(misfit: float) -> None:
     if misfit > LARGEST_MISFIT:
         raise ValueError(
-            f"the data are on average {misfit:.3g} standard deviations from what mean, variation and correlation allow: "
-            "exact values that differ much over a small distance need a measurement_error, a shorter scale of "
+            f"the data are on average {misfit:.3g} standard deviations from what mean, variation and correlation "
+            "allow: exact values that differ much over a small distance need a measurement_error, a shorter scale of "
             "fluctuation or a nugget"
         )
 

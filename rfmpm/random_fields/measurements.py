@@ -1,6 +1,6 @@
 """Measured values of a variable at places, and what they are in the standard-normal space below its distribution."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from math import sqrt
 from typing import Any, NamedTuple
 
@@ -19,8 +19,8 @@ class Measurements(NamedTuple):
     Attributes:
         places: shape (d, 2) [m].
         values: shape (d,), in the unit of the field.
-        errors: coefficient of variation of the error of measurement, shape (d,) [-]; 0 for an exact value. Measured over
-            true value is lognormal with median 1.
+        errors: coefficient of variation of the error of measurement, shape (d,) [-]; 0 for an exact value. The ratio
+            of measured to true value is lognormal with median 1.
     """
 
     places: np.ndarray
@@ -36,19 +36,24 @@ class StandardNormalData(NamedTuple):
     error_variances: np.ndarray
 
 
-def measurements(data: Iterable[Any], measurement_error: float, unit: float) -> Measurements:
+def measurements(
+    data: Iterable[Any], measurement_error: float | None, to_field: Callable[[float], float]
+) -> Measurements:
     """The data of a study in the unit of the field.
 
     Args:
-        data: entries with x_m, y_m, value and measurement_error (None: the common one).
-        measurement_error: the common coefficient of variation of the error [-].
-        unit: of the values, in the unit of the field.
+        data: entries with x_m, y_m, value, and measurement_error (None: the common one).
+        measurement_error: the common coefficient of variation of the error [-]; None: exact.
+        to_field: the number of the field that a value of the study stands for.
     """
-    rows = [
-        (d.x_m, d.y_m, d.value * unit, measurement_error if d.measurement_error is None else d.measurement_error)
-        for d in data
-    ]
-    table = np.array(rows, dtype=float).reshape(len(rows), 4)
+    common = measurement_error or 0.0
+    table = np.array(
+        [
+            (d.x_m, d.y_m, to_field(d.value), common if d.measurement_error is None else d.measurement_error)
+            for d in data
+        ],
+        dtype=float,
+    ).reshape(-1, 4)
     return Measurements(table[:, :2].copy(), table[:, 2].copy(), table[:, 3].copy())
 
 
@@ -56,7 +61,7 @@ def to_standard_normal(marginal: Marginal, values: np.ndarray) -> np.ndarray:
     """Standard-normal values with the same probability of non-exceedance, by bisection: for any increasing transform.
 
     Args:
-        marginal: the distribution.
+        marginal: the distribution, or one for each value.
         values: physical values, shape (d,).
 
     Returns:
@@ -79,13 +84,13 @@ def standard_normal_data(marginal: Marginal, data: Measurements) -> StandardNorm
     variable exactly, otherwise to first order in the error.
 
     Raises:
-        ValueError: a value outside the range of the distribution, or two exact values that differ at one place; it names
-            them by their position, from 0.
+        ValueError: a value outside the range of the distribution, or two exact values that differ at one place; data
+            are named by their position, from 0.
     """
     z = to_standard_normal(marginal, data.values)
     if np.any(np.isnan(z)):
         k = int(np.flatnonzero(np.isnan(z))[0])
-        low, high = marginal.transform(np.array([-FARTHEST, FARTHEST]))
+        low, high = (marginal.transform(np.full(len(z), end))[k] for end in (-FARTHEST, FARTHEST))
         raise ValueError(
             f"data.{k}: the value {data.values[k]:.6g} at {_place(data, k)} lies outside what the distribution allows, "
             f"{low:.4g} to {high:.4g} (probability 1e-15 beyond); is its unit right, and the mean of the field?"
@@ -109,8 +114,8 @@ def _distinct(data: Measurements) -> list[int]:
         other = kept[int(np.argmin(distance))]
         if abs(data.values[k] - data.values[other]) > SAME_VALUE * abs(data.values[other]):
             raise ValueError(
-                f"data.{other} and data.{k} contradict each other: {data.values[other]:.6g} and {data.values[k]:.6g} at "
-                f"{_place(data, k)}, both exact; give them a measurement_error, or keep one"
+                f"data.{other} and data.{k} contradict each other: {data.values[other]:.6g} and {data.values[k]:.6g}, "
+                f"both exact, at {_place(data, k)}; give them a measurement_error, or keep one"
             )
     return sorted([*kept, *map(int, np.flatnonzero(data.errors > 0.0))])
 

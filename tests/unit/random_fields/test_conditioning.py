@@ -1,4 +1,4 @@
-"""Conditioning from its linear map: mean and covariance are those of the conditional distribution, data are honoured."""
+"""Conditioning: mean and covariance of its linear map are the conditional ones, and data are honoured."""
 
 import numpy as np
 import pytest
