@@ -39,6 +39,7 @@ class Conditioning:
         neighbours: indices of the u points from which the field at the data is drawn, shape (u,).
         from_neighbours: weights of the neighbours, shape (d, u) [-].
         residual: factor of the covariance of what the neighbours leave open and of the errors, shape (d, r) [-].
+        on_points: index of the point that a datum is on, shape (d,); -1 for none.
         mean: conditional mean, shape (n,) [-].
         deviation: conditional standard deviation, shape (n,) [-].
         covariance_error: largest error of the conditional covariance between points, beyond that of the method [-].
@@ -49,6 +50,7 @@ class Conditioning:
     neighbours: np.ndarray
     from_neighbours: np.ndarray
     residual: np.ndarray
+    on_points: np.ndarray
     mean: np.ndarray
     deviation: np.ndarray
     covariance_error: float
@@ -86,7 +88,9 @@ def condition(correlation: Anisotropy, points: np.ndarray, data: StandardNormalD
     left = among - from_neighbours @ _covariance(correlation, points[neighbours], data.places)
     left[on_point] = left[:, on_point] = 0.0
     residual = _residual_factor(0.5 * (left + left.T) + np.diag(data.error_variances), ~exact)
-    return Conditioning(data, weights, neighbours, from_neighbours, residual, weights @ data.values, deviation, error)
+    on_points = np.where(on_point, nearest, -1)
+    mean = weights @ data.values
+    return Conditioning(data, weights, neighbours, from_neighbours, residual, on_points, mean, deviation, error)
 
 
 def update(conditioning: Conditioning, z: np.ndarray, xi: np.ndarray) -> np.ndarray:

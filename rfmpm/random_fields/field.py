@@ -17,7 +17,7 @@ import numpy as np
 from rfmpm.random_fields.conditioning import Conditioning, condition, update
 from rfmpm.random_fields.correlation import CORRELATIONS, Anisotropy
 from rfmpm.random_fields.marginals import MARGINALS, Marginal
-from rfmpm.random_fields.measurements import Measurements, standard_normal_data
+from rfmpm.random_fields.measurements import Measurements, distinct, standard_normal_data
 from rfmpm.random_fields.methods import METHODS
 from rfmpm.random_fields.store import find_or_prepare
 
@@ -28,13 +28,14 @@ Entry = TypeVar("Entry")
 class PreparedField:
     """A field ready to be realised: its correlation, its marginal distribution, and what its method prepared.
 
-    `conditioning` is what makes its realisations agree with data; None without data.
+    `data` are the measured values and `conditioning` is what makes its realisations agree with them; None without any.
     """
 
     correlation: Anisotropy
     marginal: Marginal
     method: str
     record: Any
+    data: Measurements | None = None
     conditioning: Conditioning | None = None
 
     @property
@@ -81,10 +82,11 @@ def prepare(
         record = method.prepare(correlation, points)
     else:
         record = find_or_prepare(settings.method, correlation, points, store)
-    conditioning = None
-    if data is not None and len(data.values):
-        conditioning = condition(correlation, points, standard_normal_data(marginal, data))
-    return PreparedField(correlation, marginal, settings.method, record, conditioning)
+    if data is None or len(data.values) == 0:
+        return PreparedField(correlation, marginal, settings.method, record)
+    data = distinct(data)
+    conditioning = condition(correlation, points, standard_normal_data(marginal, data))
+    return PreparedField(correlation, marginal, settings.method, record, data, conditioning)
 
 
 def realise(prepared: PreparedField, xi: np.ndarray) -> np.ndarray:

@@ -78,14 +78,13 @@ def to_standard_normal(marginal: Marginal, values: np.ndarray) -> np.ndarray:
 
 
 def standard_normal_data(marginal: Marginal, data: Measurements) -> StandardNormalData:
-    """Measurements in standard-normal space, exact ones that say the same at the same place kept once.
+    """Measurements in standard-normal space.
 
     An error of coefficient of variation V becomes an error of variance ln(1 + V^2) / (d ln x / dz)^2: for a lognormal
     variable exactly, otherwise to first order in the error.
 
     Raises:
-        ValueError: a value outside the range of the distribution, or two exact values that differ at one place; data
-            are named by their position, from 0.
+        ValueError: a value outside the range of the distribution; it names the datum by its position, from 0.
     """
     z = to_standard_normal(marginal, data.values)
     if np.any(np.isnan(z)):
@@ -100,11 +99,15 @@ def standard_normal_data(marginal: Marginal, data: Measurements) -> StandardNorm
     slope = (upper - lower) / (2.0 * step * data.values)
     with np.errstate(divide="ignore"):
         variance = np.where(data.errors > 0.0, np.log1p(data.errors**2) / slope**2, 0.0)
-    kept = _distinct(data)
-    return StandardNormalData(data.places[kept], z[kept], variance[kept])
+    return StandardNormalData(data.places, z, variance)
 
 
-def _distinct(data: Measurements) -> list[int]:
+def distinct(data: Measurements) -> Measurements:
+    """Keep exact measurements that say the same at the same place once, at the front; those with errors all stay.
+
+    Raises:
+        ValueError: two exact values that differ at one place; it names them by their position, from 0.
+    """
     kept: list[int] = []
     for k in np.flatnonzero(data.errors == 0.0):
         distance = np.hypot(*(data.places[kept] - data.places[k]).T) if kept else np.array([np.inf])
@@ -117,7 +120,8 @@ def _distinct(data: Measurements) -> list[int]:
                 f"data.{other} and data.{k} contradict each other: {data.values[other]:.6g} and {data.values[k]:.6g}, "
                 f"both exact, at {_place(data, k)}; give them a measurement_error, or keep one"
             )
-    return sorted([*kept, *map(int, np.flatnonzero(data.errors > 0.0))])
+    kept += map(int, np.flatnonzero(data.errors > 0.0))
+    return Measurements(*(column[kept] for column in data))
 
 
 def _place(data: Measurements, k: int) -> str:
