@@ -61,8 +61,11 @@ def write_field(study, index: int, directory: Path) -> list[str]:
 
 
 def method_lines(field) -> list[str]:
-    """How the field is made."""
-    return [f"method {field.method}, {field.n_variables} variables"]
+    """How the field is made, and what is known of its error before any sampling."""
+    from rfmpm.random_fields.methods import METHODS
+
+    error = METHODS[field.method].covariance_error(field.record)
+    return [f"method {field.method}, {field.n_variables} variables; largest error of its covariance {error:.1e}"]
 
 
 def _table(records: Sequence) -> list[str]:

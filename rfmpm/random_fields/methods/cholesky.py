@@ -72,6 +72,11 @@ class Cholesky:
         variance = np.einsum("ij,ij->i", lower, lower)
         return bool(np.all(np.abs(variance - 1.0 - nugget) < n * 1e-14))
 
+    @staticmethod
+    def covariance_error(record: CholeskyRecord) -> float:
+        """The nugget: the factor is exact but for it and rounding."""
+        return float(record.nugget)
+
 
 def _lower_factor(correlation: Anisotropy, points: np.ndarray, nugget: float) -> np.ndarray | None:
     import scipy.linalg  # late: commands that make no field do not pay for it
