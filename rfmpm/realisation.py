@@ -16,6 +16,8 @@ from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNI
 from rfmpm.observer import Observer, final_state
 from rfmpm.quantities import QUANTITIES, first_minimum
 from rfmpm.random_fields import field as random_field
+from rfmpm.random_fields.measurements import measurements
+from rfmpm.study import StudyError
 from rfmpm.variables import FAILED, STATUS, active_variables
 
 
@@ -54,14 +56,18 @@ def prepare(study, store: Path | None = None) -> Prepared:
 
     Raises:
         OSError: if the store cannot be written.
+        StudyError: if a field cannot be made as asked, or its data contradict what is asked.
     """
     scene = scenes.build(study)
     positions = np.column_stack(scene.points.position)
     means = {"cohesion": getattr(study.material[0], "cohesion_kpa", 0.0) * 1e3}
-    prepared = {
-        name: random_field.prepare(settings, means[name], positions, store)
-        for name, settings in study.random_field.items()
-    }
+    prepared = {}
+    for name, settings in study.random_field.items():
+        data = measurements(settings.data or (), settings.measurement_error, lambda kilopascal: kilopascal * 1e3)
+        try:
+            prepared[name] = random_field.prepare(settings, means[name], positions, store, data)
+        except ValueError as error:
+            raise StudyError([f"random_field.{name}: {error}"]) from None
     return Prepared(study, scene, prepared)
 
 

@@ -14,8 +14,10 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from rfmpm.random_fields.conditioning import Conditioning, condition, update
 from rfmpm.random_fields.correlation import CORRELATIONS, Anisotropy
 from rfmpm.random_fields.marginals import MARGINALS, Marginal
+from rfmpm.random_fields.measurements import Measurements, distinct, standard_normal_data
 from rfmpm.random_fields.methods import METHODS
 from rfmpm.random_fields.store import find_or_prepare
 
@@ -24,20 +26,28 @@ Entry = TypeVar("Entry")
 
 @dataclass(frozen=True)
 class PreparedField:
-    """A field ready to be realised: its correlation, its marginal distribution, and what its method prepared."""
+    """A field ready to be realised: its correlation, its marginal distribution, and what its method prepared.
+
+    `data` are the measured values and `conditioning` is what makes its realisations agree with them; None without any.
+    """
 
     correlation: Anisotropy
     marginal: Marginal
     method: str
     record: Any
+    data: Measurements | None = None
+    conditioning: Conditioning | None = None
 
     @property
     def n_variables(self) -> int:
         """Length of the vector `xi`."""
-        return METHODS[self.method].n_variables(self.record)
+        n_method = METHODS[self.method].n_variables(self.record)
+        return n_method + (self.conditioning.n_variables if self.conditioning else 0)
 
 
-def prepare(settings: Any, mean: float, points: np.ndarray, store: Path | None = None) -> PreparedField:
+def prepare(
+    settings: Any, mean: float, points: np.ndarray, store: Path | None = None, data: Measurements | None = None
+) -> PreparedField:
     """Prepare the field of one strength parameter.
 
     Args:
@@ -45,12 +55,14 @@ def prepare(settings: Any, mean: float, points: np.ndarray, store: Path | None =
         mean: mean of the field [Pa].
         points: positions, shape (n, 2) [m].
         store: folder in which what the method prepares is kept and found again; None keeps it in memory only.
+        data: measured values that every realisation agrees with; None, or none of them, for an unconditional field.
 
     Returns:
         the prepared field.
 
     Raises:
-        ValueError: an unknown name, moments or scales out of range, points that are not finite positions.
+        ValueError: an unknown name, moments or scales out of range, points that are not finite positions, data that
+            contradict each other, the distribution or the correlation.
         OSError: the store cannot be written.
     """
     points = np.ascontiguousarray(points, dtype=np.float64)
@@ -70,7 +82,11 @@ def prepare(settings: Any, mean: float, points: np.ndarray, store: Path | None =
         record = method.prepare(correlation, points)
     else:
         record = find_or_prepare(settings.method, correlation, points, store)
-    return PreparedField(correlation, marginal, settings.method, record)
+    if data is None or len(data.values) == 0:
+        return PreparedField(correlation, marginal, settings.method, record)
+    data = distinct(data)
+    conditioning = condition(correlation, points, standard_normal_data(marginal, data))
+    return PreparedField(correlation, marginal, settings.method, record, data, conditioning)
 
 
 def realise(prepared: PreparedField, xi: np.ndarray) -> np.ndarray:
@@ -94,7 +110,11 @@ def realise_standard_normal(prepared: PreparedField, xi: np.ndarray) -> np.ndarr
     xi = np.ascontiguousarray(xi, dtype=np.float64)
     if xi.shape != (prepared.n_variables,):
         raise ValueError(f"xi of shape {xi.shape}: must be ({prepared.n_variables},)")
-    return METHODS[prepared.method].transform(prepared.record, xi)
+    method = METHODS[prepared.method]
+    if prepared.conditioning is None:
+        return method.transform(prepared.record, xi)
+    n_method = method.n_variables(prepared.record)
+    return update(prepared.conditioning, method.transform(prepared.record, xi[:n_method]), xi[n_method:])
 
 
 def _choose(table: Mapping[str, Entry], name: str, key: str) -> Entry:

@@ -6,8 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rfmpm.random_fields.conditioning import conditional_covariance
 from rfmpm.random_fields.correlation import Anisotropy
 from rfmpm.random_fields.field import PreparedField, realise_standard_normal
+from rfmpm.random_fields.measurements import conditional_moments
 
 MOST_PAIRS = 400
 
@@ -15,8 +17,9 @@ MOST_PAIRS = 400
 class Statistic(NamedTuple):
     """One statistic: what was asked, what was found, and the standard error of the finding.
 
-    `name` is mean, standard_deviation (of the strength), correlation_h or correlation_v (of the standard-normal field);
-    `lag` [m] is zero for the first two.
+    `name` is mean, standard_deviation (of the strength), correlation_h or correlation_v (of the standard-normal field,
+    or with data covariance_h and covariance_v, of its departure from the conditional mean); `lag` [m] is zero for the
+    first two.
     """
 
     name: str
@@ -42,7 +45,8 @@ def statistics(
     """Compare the field over many realisations with what was asked.
 
     Each realisation gives one average over the points, or over pairs of points; the realisations are independent, and
-    the standard error comes from the scatter between them.
+    the standard error comes from the scatter between them. With data, what is asked is the conditional distribution of
+    each point, averaged in the same way.
 
     Args:
         prepared: the prepared field.
@@ -52,38 +56,45 @@ def statistics(
         xis: standard-normal vectors, each of shape (n_variables,) [-]; at least two.
 
     Returns:
-        mean and standard deviation [Pa], and the correlation [-] at lags k theta / 4, k = 1 to 8, along the h axis and
-        across it, as far as there are points that far apart.
+        mean and standard deviation [Pa], and the correlation or covariance [-] at lags k theta / 4, k = 1 to 8, along
+        the h axis and across it, as far as there are points that far apart.
 
     Raises:
         ValueError: fewer than two realisations.
     """
-    pairs = list(point_pairs(prepared.correlation, np.asarray(points, dtype=float)))
+    points = np.asarray(points, dtype=float)
+    pairs = list(point_pairs(prepared.correlation, points))
+    centre, means, deviation = 0.0, mean, mean * settings.coefficient_of_variation
+    if conditioning := prepared.conditioning:
+        pairs = [_conditional(pair, prepared, points) for pair in pairs]
+        centre = conditioning.mean
+        means, deviations = conditional_moments(prepared.marginal, centre, conditioning.deviation)
+        deviation = float(np.sqrt(np.mean(deviations**2)))
     samples = []
     for xi in xis:
         z = realise_standard_normal(prepared, xi)
         strength = prepared.marginal.transform(z)
+        z = z - centre
         products = [np.mean(z[pair.first] * z[pair.second]) for pair in pairs]
-        samples.append([np.mean(strength), np.mean((strength - mean) ** 2), *products])
+        samples.append([np.mean(strength), np.mean((strength - means) ** 2), *products])
     if len(samples) < 2:
         raise ValueError(f"{len(samples)} realisations: statistics need two or more")
     found = np.mean(samples, axis=0)
     error = np.std(samples, axis=0, ddof=1) / np.sqrt(len(samples))
-    deviation = np.sqrt(found[1])
+    root = np.sqrt(found[1])
     return [
-        Statistic("mean", 0.0, mean, float(found[0]), float(error[0])),
-        Statistic(
-            "standard_deviation",
-            0.0,
-            mean * settings.coefficient_of_variation,
-            float(deviation),
-            float(error[1] / (2.0 * deviation)),
-        ),
+        Statistic("mean", 0.0, float(np.mean(means)), float(found[0]), float(error[0])),
+        Statistic("standard_deviation", 0.0, deviation, float(root), float(error[1] / (2.0 * root))),
         *(
             Statistic(pair.name, pair.lag, pair.asked, float(found[k]), float(error[k]))
             for k, pair in enumerate(pairs, start=2)
         ),
     ]
+
+
+def _conditional(pair: PointPairs, prepared: PreparedField, points: np.ndarray) -> PointPairs:
+    asked = conditional_covariance(prepared.correlation, prepared.conditioning, points, pair.first, pair.second)
+    return pair._replace(name=pair.name.replace("correlation", "covariance"), asked=float(np.mean(asked)))
 
 
 def point_pairs(correlation: Anisotropy, points: np.ndarray, lags: int = 8) -> Iterator[PointPairs]:

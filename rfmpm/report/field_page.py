@@ -5,8 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
+from rfmpm.report.correlation_figure import draw_correlations
+from rfmpm.report.data_picture import data_lines, draw_conditional
 from rfmpm.report.slope_figures import WIDTH, draw_panel, panel_height, view
-from rfmpm.report.style import BLUE, DOTS_PER_INCH, ORANGE, STRENGTH_MAP, VERMILION, drawing, new_figure
+from rfmpm.report.style import BLUE, DOTS_PER_INCH, STRENGTH_MAP, VERMILION, drawing, new_figure
 
 SAMPLE = 200  # realisations behind the statistics; their standard error is then about 0.07 of one realisation's scatter
 NAMES = {
@@ -14,6 +16,8 @@ NAMES = {
     "standard_deviation": "standard deviation",
     "correlation_h": "correlation along h",
     "correlation_v": "correlation along v",
+    "covariance_h": "conditional cov. along h",
+    "covariance_v": "conditional cov. along v",
 }
 
 
@@ -27,6 +31,8 @@ def write_field(study, index: int, directory: Path) -> list[str]:
 
     Returns:
         Lines of a table: asked and found mean, standard deviation [kPa] and correlations [-], with standard errors.
+        With data, the asked values are those of the conditional distribution, and the picture shows data, conditional
+        mean, two realisations and conditional standard deviation.
         A study without a random field gives one line that says so, and no picture.
     """
     from rfmpm import realisation
@@ -46,14 +52,26 @@ def write_field(study, index: int, directory: Path) -> list[str]:
     sample = np.array([realise(field, xi) for xi in xis]) / 1000.0
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
-    _draw(study, index, points, sample, field.marginal, records, directory / "field.png")
-    return _table(records)
+    path = directory / "field.png"
+    if field.conditioning is None:
+        _draw(study, index, points, sample, field.marginal, records, path)
+    else:
+        draw_conditional(study, index, points, field, sample, records, path)
+    return [*method_lines(field), *_table(records), *data_lines(field, xis)]
+
+
+def method_lines(field) -> list[str]:
+    """How the field is made, and what is known of its error before any sampling."""
+    from rfmpm.random_fields.methods import METHODS
+
+    error = METHODS[field.method].covariance_error(field.record)
+    return [f"method {field.method}, {field.n_variables} variables; largest error of its covariance {error:.1e}"]
 
 
 def _table(records: Sequence) -> list[str]:
     lines = [
         f"{SAMPLE} realisations on the material points; correlations of the standard-normal field below the marginal",
-        f"{'':<25}{'lag [m]':>7}{'asked':>10}{'found':>10}{'std. error':>12}{'in std. errors':>18}",
+        f"{'':<26}{'lag [m]':>7}{'asked':>10}{'found':>10}{'std. error':>12}{'in std. errors':>18}",
     ]
     for record in records:
         unit = 1000.0 if record.name in ("mean", "standard_deviation") else 1.0
@@ -61,7 +79,7 @@ def _table(records: Sequence) -> list[str]:
         lag = f"{record.lag:.2f}" if unit == 1.0 else ""
         asked, found, error = (value / unit for value in (record.asked, record.found, record.standard_error))
         ratio = (found - asked) / error if error > 0.0 else float("nan")
-        lines.append(f"{name:<25}{lag:>7}{asked:>10.4f}{found:>10.4f}{error:>12.4f}{ratio:>18.1f}")
+        lines.append(f"{name:<26}{lag:>7}{asked:>10.4f}{found:>10.4f}{error:>12.4f}{ratio:>18.1f}")
     return lines
 
 
@@ -80,7 +98,7 @@ def _draw(study, index: int, points: np.ndarray, sample: np.ndarray, marginal, r
         ends = tuple(np.percentile(sample[0], [1.0, 99.0]))
         draw_panel(figure, axes, places, sample[0], polygon, frame, ends, "cohesion [kPa]", STRENGTH_MAP)
         _histogram(figure.add_subplot(grid[1, 0]), index, sample, marginal)
-        _correlations(figure.add_subplot(grid[1, 1]), records)
+        draw_correlations(figure.add_subplot(grid[1, 1]), records)
         figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
 
 
@@ -94,23 +112,4 @@ def _histogram(axes, index: int, sample: np.ndarray, marginal) -> None:
     axes.hist(sample[0], bins=edges, density=True, histtype="step", color=BLUE, label=f"realisation {index}")
     axes.plot(value, density, color=VERMILION, label="asked")
     axes.set(xlabel="cohesion [kPa]", ylabel="density [1/kPa]", title="Distribution", xlim=edges[[0, -1]])
-    axes.legend(loc="upper right")
-
-
-def _correlations(axes, records: Sequence) -> None:
-    for name, colour, marker in (("correlation_h", BLUE, "o"), ("correlation_v", ORANGE, "s")):
-        chosen = [record for record in records if record.name == name]
-        if not chosen:
-            continue
-        lag = [record.lag for record in chosen]
-        errors = [2.0 * record.standard_error for record in chosen]
-        axes.plot(lag, [record.asked for record in chosen], color=colour, lw=1.2)
-        axes.errorbar(
-            lag, [record.found for record in chosen], errors, color=colour, marker=marker, ms=4, ls="", lw=1.2
-        )
-        axes.plot(
-            [], [], color=colour, marker=marker, ms=4, lw=1.2, label=f"{NAMES[name].removeprefix('correlation ')}"
-        )
-    axes.axhline(0.0, color="black", lw=0.6)
-    axes.set(xlabel="lag [m]", ylabel="correlation [-]", title="Correlation: asked (line), found ± 2 std. errors")
     axes.legend(loc="upper right")

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from math import sqrt
 
+from rfmpm.study.data_file import contradictions
 from rfmpm.study.errors import Problem
 from rfmpm.study.known import Known, Unknown, problem
 from rfmpm.study.material_checks import MATERIAL_CHECKS
@@ -112,6 +113,24 @@ def _truncated_normal_can_spread_so(known: Known) -> Iterator[Problem]:
             yield problem(known, key, f"must be less than {highest:g} for normal_truncated; lognormal allows more")
 
 
+def _data_agree(known: Known) -> Iterator[Problem]:
+    for variable in known["random_field"]:
+        key = f"random_field.{variable}"
+        if known[f"{key}.data_file"] is not None:
+            text = "is read where a study is loaded: use load_study, or give its content as data"
+            yield problem(known, f"{key}.data_file", text)
+        count = len(known[f"{key}.data"] or ())
+        common = known[f"{key}.measurement_error"]
+        data = []
+        for index in range(count):
+            x, y, value, own = (
+                known[f"{key}.data.{index}.{name}"] for name in ("x_m", "y_m", "value", "measurement_error")
+            )
+            data.append((x, y, value, (common if own is None else own) or 0.0))
+        for first, second, text in contradictions(data, [f"data.{index}" for index in range(count)]):
+            yield problem(known, f"{key}.{first}", f"and {second} {text}")
+
+
 CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     *SIZE_CHECKS,
     _residual_is_below_the_peak,
@@ -121,5 +140,6 @@ CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _names_are_unique,
     _field_has_its_material,
     _truncated_normal_can_spread_so,
+    _data_agree,
     *MATERIAL_CHECKS,
 ]

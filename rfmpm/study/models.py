@@ -201,6 +201,17 @@ Material = Annotated[
 ]
 
 
+class Datum(Table):
+    """One measured value of a random variable"""
+
+    x_m: Number = Field(description="Place [m]")
+    y_m: Number = Field(description="Place, upwards [m]")
+    value: Positive = Field(description="Measured value, in the unit of the material's own key: kPa for a cohesion")
+    measurement_error: NotNegative | None = Field(
+        None, le=2, description="Coefficient of variation of its error [1]. Default: that of the field"
+    )
+
+
 class RandomField(Table):
     """[random_field.<variable>]"""
 
@@ -215,6 +226,17 @@ class RandomField(Table):
     rotation_deg: Number = Field(0.0, ge=-180, le=180, description="Rotation of the axes, anticlockwise [degrees]")
     method: Literal["cholesky"] = Field("cholesky", description="How the field is generated")
     averaging: Literal["point"] = Field("point", description="What a value stands for: the field at the point")
+    data_file: Text | None = Field(
+        None,
+        description="Measured values that every realisation agrees with: a CSV file with a header x_m, y_m, value and, "
+        "if errors differ, measurement_error; beside the study file. Becomes `data` when the study is loaded",
+    )
+    data: Annotated[tuple[Datum, ...], Hint("x_m, y_m and value each")] | None = Field(
+        None, description="Measured values that every realisation agrees with; or give data_file"
+    )
+    measurement_error: NotNegative | None = Field(
+        None, le=2, description="Coefficient of variation of the error of the data [1]. Default: exact"
+    )
 
 
 class Time(Table):

@@ -79,3 +79,13 @@ def test_a_fresh_record_is_intact_and_one_for_other_points_is_not(method, points
     record = method.prepare(CORRELATIONS["markov_separable"](6.0, 1.0), points)
     assert method.is_intact(record, points)
     assert not method.is_intact(record, points[:-1])
+
+
+@every_correlation
+@every_method
+def test_the_covariance_error_is_that_of_the_linear_map(method, kernel, points):
+    correlation = kernel(6.0, 1.0)
+    record = method.prepare(correlation, points)
+    factor = np.array([method.transform(record, unit) for unit in np.eye(method.n_variables(record))]).T
+    found = np.abs(factor @ factor.T - asked_covariance(correlation, points)).max()
+    assert found <= method.covariance_error(record) + 1e-12  # rounding of n products

@@ -22,10 +22,10 @@ FLOORS = {
     2: (
         *("mpm.stages", "mpm.cells", "mpm.nonlocal_softening", "mpm.boundary", "mpm.contact", "mpm.laws", "mpm.shapes"),
         *("random_fields.methods", "random_fields.correlation", "random_fields.marginals"),
-        "random_fields.conditioning",
+        *("random_fields.conditioning", "random_fields.measurements", "random_fields.estimation"),
     ),
     1: ("mpm.state", "mpm.protocols", "study", "variables", "seeds"),
-    0: ("kernel_tools",),
+    0: ("kernel_tools", "columns"),
 }
 FLOOR_OF = {name: floor for floor, names in FLOORS.items() for name in names}
 NAMESPACES = {"mpm", "random_fields"}  # rooms on several floors: their __init__ imports nothing and offers nothing

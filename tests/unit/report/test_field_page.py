@@ -31,7 +31,7 @@ def coarse(monkeypatch):
 @pytest.mark.usefixtures("coarse")
 def test_table_compares_asked_and_found_and_the_picture_is_written(tmp_path):
     lines = write_field(make_study(), 3, tmp_path / "field")
-    numbers = {line[:25].strip() + line[25:32].strip(): list(map(float, line[32:].split())) for line in lines[2:]}
+    numbers = {line[:26].strip() + line[26:33].strip(): list(map(float, line[33:].split())) for line in lines[3:]}
     assert numbers["mean [kPa]"][0] == 20.0
     assert numbers["standard deviation [kPa]"][0] == 5.0
     assert numbers["correlation along h6.00"][0] == pytest.approx(np.exp(-2.0), abs=1e-4)  # printed to four places
@@ -39,7 +39,7 @@ def test_table_compares_asked_and_found_and_the_picture_is_written(tmp_path):
     assert all(abs(ratio) < 4.0 for *_, ratio in numbers.values())
     for asked, found, error, ratio in numbers.values():
         assert found == pytest.approx(asked + ratio * error, abs=0.06 * error + 1e-3)
-    assert len({len(line) for line in lines[1:]}) == 1
+    assert len({len(line) for line in lines[2:]}) == 1
     with Image.open(tmp_path / "field" / "field.png") as image:
         image.verify()
 
