@@ -16,7 +16,7 @@ import numpy as np
 
 from rfmpm.random_fields.correlation import CORRELATIONS, Anisotropy
 from rfmpm.random_fields.marginals import MARGINALS, Marginal
-from rfmpm.random_fields.methods import METHODS
+from rfmpm.random_fields.methods import AUTO, METHODS, choose
 from rfmpm.random_fields.store import find_or_prepare
 
 Entry = TypeVar("Entry")
@@ -24,7 +24,10 @@ Entry = TypeVar("Entry")
 
 @dataclass(frozen=True)
 class PreparedField:
-    """A field ready to be realised: its correlation, its marginal distribution, and what its method prepared."""
+    """A field ready to be realised: its correlation, its marginal distribution, and what its method prepared.
+
+    `method` is a name in `METHODS`: where a study says auto, the method that was chosen.
+    """
 
     correlation: Anisotropy
     marginal: Marginal
@@ -57,7 +60,6 @@ def prepare(settings: Any, mean: float, points: np.ndarray, store: Path | None =
     if points.ndim != 2 or points.shape[1] != 2 or len(points) == 0 or not np.all(np.isfinite(points)):
         raise ValueError(f"points of shape {points.shape}: must be finite positions, shape (n, 2), n > 0")
     kernel = _choose(CORRELATIONS, settings.correlation, "correlation")
-    method = _choose(METHODS, settings.method, "method")
     marginal = _choose(MARGINALS, settings.distribution, "distribution").from_moments(
         mean, settings.coefficient_of_variation
     )
@@ -66,11 +68,11 @@ def prepare(settings: Any, mean: float, points: np.ndarray, store: Path | None =
         theta_v=settings.scale_of_fluctuation_v_m,
         rotation=radians(settings.rotation_deg),
     )
-    if store is None:
-        record = method.prepare(correlation, points)
-    else:
-        record = find_or_prepare(settings.method, correlation, points, store)
-    return PreparedField(correlation, marginal, settings.method, record)
+    name = choose(correlation, points) if settings.method == AUTO else settings.method
+    method = _choose(METHODS, name, "method")
+    kept = store is not None
+    record = find_or_prepare(name, correlation, points, store) if kept else method.prepare(correlation, points)
+    return PreparedField(correlation, marginal, name, record)
 
 
 def realise(prepared: PreparedField, xi: np.ndarray) -> np.ndarray:

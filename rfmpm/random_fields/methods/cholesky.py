@@ -71,6 +71,11 @@ class Cholesky:
         variance = np.einsum("ij,ij->i", lower, lower)
         return bool(np.all(np.abs(variance - 1.0 - nugget) < n * 1e-14))
 
+    @staticmethod
+    def covariance_error(record: CholeskyRecord) -> float:
+        """The nugget [-]: nothing else is added."""
+        return float(record.nugget)
+
 
 def factor(make_covariance: Callable[[], np.ndarray]) -> tuple[np.ndarray, float]:
     """Lower Cholesky factor of a covariance with the smallest nugget of `NUGGETS` on its diagonal that allows it.

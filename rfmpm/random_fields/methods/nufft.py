@@ -13,13 +13,12 @@ import numpy as np
 from rfmpm.kernel_tools import kernel
 from rfmpm.random_fields.correlation import Anisotropy
 from rfmpm.random_fields.lattice import Lattice
-from rfmpm.random_fields.methods.embedding import Spectrum, embed
+from rfmpm.random_fields.methods.embedding import ACCURACY, Spectrum, embed
 
-ACCURACY = 5e-4  # largest covariance error that needs no finer lattice
 LARGEST_ERROR = 0.02  # a field with more is refused
-MOST_TERMS = 2**20  # of the series: at 0.1 microseconds each, what one field may cost
+MOST_TERMS = 2**22  # of the torus: some tens of milliseconds for one field
 DROPS = tuple(0.4 * 0.5**k for k in range(14))  # of the correlation over one spacing, from coarse to fine
-TRANSFORM_ERROR = 1e-6  # of the non-uniform transform, relative
+TRANSFORM = {"eps": 1e-5, "upsampfac": 1.25, "isign": 1, "nthreads": 1}  # eps: relative error
 COMPARED = 150  # points between which, beside short lags, the covariance error is taken
 SHORT_LAGS = 25  # a side of the block of lags within three spacings
 
@@ -27,12 +26,14 @@ SHORT_LAGS = 25  # a side of the block of lags within three spacings
 class NufftRecord(NamedTuple):
     """What the series needs.
 
-    `phases`, shape (2, n) [rad]: place of every point on the torus along y and x; `amplitudes`, shape (terms along y,
-    terms along x) [-], y from the lowest frequency to the highest, x from zero up; `error`, shape () [-]: the largest
+    `phases`, shape (2, n) [rad]: place of every point on the torus along y and x; `turns`, shape (n,), complex [-]:
+    what turns a sum over x from minus a half of the frequencies into one from zero; `amplitudes`, shape (terms along
+    y, terms along x) [-], y from the lowest frequency to the highest, x from zero up; `error`, shape () [-]: largest
     covariance error over the lags between up to 150 points, and over 625 lags within three spacings of the lattice.
     """
 
     phases: np.ndarray
+    turns: np.ndarray
     amplitudes: np.ndarray
     error: np.ndarray
 
@@ -43,12 +44,13 @@ class Nufft:
     Record = NufftRecord
 
     @staticmethod
-    def prepare(correlation: Anisotropy, points: np.ndarray) -> NufftRecord:
+    def prepare(correlation: Anisotropy, points: np.ndarray, most_terms: int = MOST_TERMS) -> NufftRecord:
         """Refine the auxiliary lattice until the covariance is accurate, or the series as long as it may be.
 
         Args:
             correlation: correlation of the standard-normal field.
             points: positions, shape (n, 2) [m].
+            most_terms: frequencies on the torus, at most.
 
         Returns:
             the record; it takes two variables per term.
@@ -59,10 +61,10 @@ class Nufft:
         best = None
         for drop in DROPS:
             lattice = _auxiliary(correlation, points, drop)
-            if 2 * lattice.rows * lattice.columns > MOST_TERMS:
+            if 2 * lattice.rows * lattice.columns > most_terms:
                 break
             spectrum = embed(correlation, lattice, ACCURACY)
-            if spectrum.eigenvalues.size > MOST_TERMS:
+            if np.prod(spectrum.shape) > most_terms:
                 break
             record = _record(correlation, points, lattice, spectrum)
             best = record if best is None or record.error < best.error else best
@@ -71,7 +73,7 @@ class Nufft:
         if best is None or best.error > LARGEST_ERROR:
             found = "" if best is None else f"; the best has a covariance error of {float(best.error):.2g}"
             raise ValueError(
-                f"nufft: {correlation} on these {len(points)} points needs more than {MOST_TERMS} terms{found}: take "
+                f"nufft: {correlation} on these {len(points)} points needs more than {most_terms} terms{found}: take "
                 "points on a lattice, larger scales of fluctuation, or up to 5000 points with method cholesky"
             )
         return best
@@ -86,13 +88,18 @@ class Nufft:
         """Standard-normal field at the points, shape (n,) [-], from `xi`, shape (n_variables,) [-]."""
         terms = np.empty(record.amplitudes.shape, dtype=complex)
         _fill(np.ascontiguousarray(xi), record.amplitudes, terms)
-        return _sum(record.phases, terms)
+        return _sum(record.phases, record.turns, terms)
 
     @staticmethod
     def is_intact(record: NufftRecord, points: np.ndarray) -> bool:
         """Whether shapes and unit variance fit these points."""
-        phases, amplitudes, error = record
-        if phases.shape != (2, len(points)) or amplitudes.ndim != 2 or error.shape != ():
+        phases, turns, amplitudes, error = record
+        if (
+            phases.shape != (2, len(points))
+            or turns.shape != (len(points),)
+            or amplitudes.ndim != 2
+            or error.shape != ()
+        ):
             return False
         if phases.dtype != np.float64 or amplitudes.dtype != np.float64 or not np.all(np.isfinite(phases)):
             return False
@@ -133,18 +140,25 @@ def _record(correlation: Anisotropy, points: np.ndarray, lattice: Lattice, spect
     lag_y = np.concatenate(
         [np.subtract.outer(some[:, 1], some[:, 1]).ravel(), lattice.dy * np.repeat(short, SHORT_LAGS)]
     )
-    covariance = _sum(np.array([lag_y, lag_x]) * per_metre[:, None], squares.astype(complex))
+    squares = squares.astype(complex)
+    covariance = _sum(*_places(lag_y * per_metre[0], lag_x * per_metre[1], squares.shape[1]), squares)
     error = float(np.max(np.abs(covariance - correlation.rho(lag_x, lag_y))))
-    return NufftRecord(np.ascontiguousarray((place * per_metre).T), np.sqrt(squares), np.array(error))
+    phases, turns = _places(*(place * per_metre).T, squares.shape[1])
+    return NufftRecord(phases, turns, np.sqrt(squares.real), np.array(error))
 
 
-def _sum(phases: np.ndarray, terms: np.ndarray) -> np.ndarray:
-    # Real part of the series, shape (n,). The transform counts frequencies from minus a half: x is turned back by that.
+def _places(y: np.ndarray, x: np.ndarray, terms: int) -> tuple[np.ndarray, np.ndarray]:
+    # Phases between minus and plus pi, and what turns back a sum whose frequencies along x begin at minus a half.
+    phases = np.remainder(np.array([y, x]) + np.pi, 2.0 * np.pi) - np.pi
+    return phases, np.exp(1j * (terms // 2) * phases[1])
+
+
+def _sum(phases: np.ndarray, turns: np.ndarray, terms: np.ndarray) -> np.ndarray:
+    # Real part of the series, shape (n,).
     import finufft  # late: commands that make no field do not pay for it
 
-    y, x = (np.remainder(row + np.pi, 2.0 * np.pi) - np.pi for row in phases)
-    shifted = finufft.nufft2d2(y, x, terms, eps=TRANSFORM_ERROR, isign=1, nthreads=1)
-    return np.real(shifted * np.exp(1j * (terms.shape[1] // 2) * x))
+    shifted = finufft.nufft2d2(*phases, terms, **TRANSFORM)
+    return shifted.real * turns.real - shifted.imag * turns.imag
 
 
 @kernel

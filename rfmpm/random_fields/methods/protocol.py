@@ -31,3 +31,7 @@ class FieldMethod(Protocol):
     @staticmethod
     def is_intact(record: Any, points: np.ndarray) -> bool:
         """Whether a record read from a file can be one for these points; false for a damaged or a foreign one."""
+
+    @staticmethod
+    def covariance_error(record: Any) -> float:
+        """Largest difference between the covariance of the field and the asked one [-]; each method says where."""
