@@ -18,7 +18,7 @@ from rfmpm.random_fields.conditioning import Conditioning, condition, update
 from rfmpm.random_fields.correlation import CORRELATIONS, Anisotropy
 from rfmpm.random_fields.marginals import MARGINALS, Marginal
 from rfmpm.random_fields.measurements import Measurements, distinct, standard_normal_data
-from rfmpm.random_fields.methods import METHODS
+from rfmpm.random_fields.methods import AUTO, METHODS, choose
 from rfmpm.random_fields.store import find_or_prepare
 
 Entry = TypeVar("Entry")
@@ -28,6 +28,7 @@ Entry = TypeVar("Entry")
 class PreparedField:
     """A field ready to be realised: its correlation, its marginal distribution, and what its method prepared.
 
+    `method` is a name in `METHODS`: where a study says auto, the method that was chosen.
     `data` are the measured values and `conditioning` is what makes its realisations agree with them; None without any.
     """
 
@@ -69,7 +70,6 @@ def prepare(
     if points.ndim != 2 or points.shape[1] != 2 or len(points) == 0 or not np.all(np.isfinite(points)):
         raise ValueError(f"points of shape {points.shape}: must be finite positions, shape (n, 2), n > 0")
     kernel = _choose(CORRELATIONS, settings.correlation, "correlation")
-    method = _choose(METHODS, settings.method, "method")
     marginal = _choose(MARGINALS, settings.distribution, "distribution").from_moments(
         mean, settings.coefficient_of_variation
     )
@@ -78,15 +78,15 @@ def prepare(
         theta_v=settings.scale_of_fluctuation_v_m,
         rotation=radians(settings.rotation_deg),
     )
-    if store is None:
-        record = method.prepare(correlation, points)
-    else:
-        record = find_or_prepare(settings.method, correlation, points, store)
+    name = choose(correlation, points) if settings.method == AUTO else settings.method
+    method = _choose(METHODS, name, "method")
+    kept = store is not None
+    record = find_or_prepare(name, correlation, points, store) if kept else method.prepare(correlation, points)
     if data is None or len(data.values) == 0:
-        return PreparedField(correlation, marginal, settings.method, record)
+        return PreparedField(correlation, marginal, name, record)
     data = distinct(data)
     conditioning = condition(correlation, points, standard_normal_data(marginal, data))
-    return PreparedField(correlation, marginal, settings.method, record, data, conditioning)
+    return PreparedField(correlation, marginal, name, record, data, conditioning)
 
 
 def realise(prepared: PreparedField, xi: np.ndarray) -> np.ndarray:

@@ -224,7 +224,16 @@ class RandomField(Table):
     scale_of_fluctuation_h_m: Positive = Field(description="Horizontal scale of fluctuation [m]")
     scale_of_fluctuation_v_m: Positive = Field(description="Vertical scale of fluctuation [m]")
     rotation_deg: Number = Field(0.0, ge=-180, le=180, description="Rotation of the axes, anticlockwise [degrees]")
-    method: Literal["cholesky"] = Field("cholesky", description="How the field is generated")
+    method: Literal[
+        "auto",
+        "cholesky",
+        "kronecker",
+        "ar1",
+        "circulant",
+        "karhunen_loeve",
+        "local_average_subdivision",
+        "nufft",
+    ] = Field("auto", description="How the field is generated; auto: the fastest that is exact or errs by 5e-4 at most")
     averaging: Literal["point"] = Field("point", description="What a value stands for: the field at the point")
     data_file: Text | None = Field(
         None,

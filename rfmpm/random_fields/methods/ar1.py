@@ -78,6 +78,11 @@ class Ar1:
             and bool(np.all(np.abs(np.sum(weights**2, axis=1) - 1.0) < IDENTITY))
         )
 
+    @staticmethod
+    def covariance_error(record: Ar1Record) -> float:
+        """None [-]."""
+        return 0.0
+
 
 def is_markov(correlation: Anisotropy, lattice: Lattice) -> bool:
     """Whether the correlation on the lattice is the product of powers of its values at one spacing."""

@@ -73,7 +73,7 @@ class Cholesky:
 
     @staticmethod
     def covariance_error(record: CholeskyRecord) -> float:
-        """The nugget: the factor is exact but for it and rounding."""
+        """The nugget [-]: nothing else is added."""
         return float(record.nugget)
 
 

@@ -7,10 +7,9 @@ import numpy as np
 from rfmpm.kernel_tools import kernel
 from rfmpm.random_fields.correlation import Anisotropy
 from rfmpm.random_fields.lattice import require_lattice
-from rfmpm.random_fields.methods.embedding import embed
+from rfmpm.random_fields.methods.embedding import ACCURACY, embed
 from rfmpm.random_fields.methods.nodes import is_index_of, node_numbers, pick
 
-ACCURACY = 5e-4  # largest covariance error that is good enough, unless another is asked
 LARGEST_ERROR = 0.02  # a field with more is refused
 
 

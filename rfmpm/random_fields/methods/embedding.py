@@ -18,6 +18,7 @@ from rfmpm.random_fields.correlation import Anisotropy
 from rfmpm.random_fields.lattice import Lattice
 from rfmpm.random_fields.methods.nodes import is_aligned
 
+ACCURACY = 5e-4  # largest covariance error that is good enough, unless another is asked
 FOLDS = (2.0, 3.0, 4.0, 6.0)  # torus over lattice
 MARGIN = 0.9  # share of the accuracy that the far side of the padding may leave
 WIDENINGS = (1.0, 1.25, 1.6, 2.2)  # of that padding, where it did not do
@@ -83,13 +84,18 @@ def embed(correlation: Anisotropy, lattice: Lattice, accuracy: float) -> Spectru
     return best
 
 
+def is_accurate(correlation: Anisotropy, lattice: Lattice) -> bool:
+    """Whether a torus in reach gives the covariance on the lattice to the default accuracy."""
+    return embed(correlation, lattice, ACCURACY).error <= ACCURACY
+
+
 def _closures(correlation: Anisotropy, lattice: Lattice, accuracy: float) -> Iterator[tuple[Closure, Closure]]:
     # Every pair of closures in reach, from the smallest torus up.
     pad_y, pad_x = (_pad(correlation, lattice, accuracy, axis) for axis in ("y", "x"))
     folds = FOLDS if is_aligned(correlation) else ()  # a folded axis takes the correlation to be even in its lag
     options = [
         [Closure(count, _fast(max(2, round(fold * (count - 1)))), True) for fold in folds]
-        + [Closure(count, _fast(count + round(wide * pad)), False) for wide in WIDENINGS if pad is not None]
+        + [Closure(count, _fast(count + round(wide * pad)), False) for wide in WIDENINGS]
         for count, pad in ((lattice.rows, pad_y), (lattice.columns, pad_x))
     ]
     most = min(MOST_NODES, max(FEWEST_NODES, MOST_NODES_RATIO * lattice.rows * lattice.columns))
@@ -97,8 +103,9 @@ def _closures(correlation: Anisotropy, lattice: Lattice, accuracy: float) -> Ite
     return (pair for k, pair in enumerate(pairs) if k == 0 or pair[0].nodes * pair[1].nodes <= most)
 
 
-def _pad(correlation: Anisotropy, lattice: Lattice, accuracy: float, axis: str) -> int | None:
-    # Nodes beyond which the correlation, at any lag across, has fallen below the accuracy; None where that is too far.
+def _pad(correlation: Anisotropy, lattice: Lattice, accuracy: float, axis: str) -> int:
+    # Nodes beyond which the correlation, at any lag across, has fallen below the accuracy; one more lattice where that
+    # is too far.
     count, spacing = (lattice.rows, lattice.dy) if axis == "y" else (lattice.columns, lattice.dx)
     across, step = (lattice.columns, lattice.dx) if axis == "y" else (lattice.rows, lattice.dy)
     side = step * np.linspace(-(across - 1), across - 1, min(2 * across - 1, 201))
@@ -109,7 +116,7 @@ def _pad(correlation: Anisotropy, lattice: Lattice, accuracy: float, axis: str) 
         if np.max(np.abs(rho)) <= MARGIN * accuracy:
             return pad
         pad = max(pad + 1, int(1.03 * pad))
-    return None
+    return count
 
 
 def _fast(least: int) -> int:

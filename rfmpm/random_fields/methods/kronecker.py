@@ -78,6 +78,11 @@ class Kronecker:
                 return False
         return is_index_of(index, np.array([len(lower_y), len(lower_x)]), points)
 
+    @staticmethod
+    def covariance_error(record: KroneckerRecord) -> float:
+        """What the nuggets add to the variance [-]."""
+        return float(np.prod(1.0 + record.nuggets) - 1.0)
+
 
 def is_product(correlation: Anisotropy) -> bool:
     """Whether the correlation is a product of one along x and one along y."""

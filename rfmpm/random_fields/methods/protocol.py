@@ -34,4 +34,4 @@ class FieldMethod(Protocol):
 
     @staticmethod
     def covariance_error(record: Any) -> float:
-        """Largest error of the covariance between points, from the linear map and not from samples [-]."""
+        """Largest difference between the covariance of the field and the asked one [-]; each method says where."""
