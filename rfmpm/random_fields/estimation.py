@@ -22,7 +22,7 @@ from rfmpm.random_fields.sounding import Sounding
 
 HALF_CHI_SQUARED = 1.9207294103470618  # half the 95 % quantile of chi squared with one degree of freedom
 TRENDS = {"constant": 1, "linear": 2}  # number of coefficients
-THETAS = 48  # at which the likelihood is evaluated; splines between them
+THETAS, NEAR = 32, 12  # where the likelihood is evaluated, over all theta and around the best; splines between
 FINE = 4001
 LONGEST = 20.0  # theta looked for, in lengths of the sounding
 NUGGET = 1e-9  # of the diagonal: what a smooth correlation needs at close spacing, and no sounding can show
@@ -144,11 +144,17 @@ def likelihood(sounding: Sounding, correlation: str, trend: str) -> Likelihood:
 
     depth = sounding.depth
     length, spacing = float(np.ptp(depth)), float(np.median(np.diff(depth)))
-    coarse = np.geomspace(0.5 * spacing, LONGEST * length, THETAS)
     n, p = len(depth), TRENDS[trend]
-    parts = np.array([_fit(sounding, correlation, trend, theta)[1:] for theta in coarse])  # log Q, log dets
-    theta = np.geomspace(coarse[0], coarse[-1], FINE)
-    log_squares, logdet, trend_logdet = CubicSpline(np.log(coarse), parts)(np.log(theta)).T
+    tried = np.geomspace(0.5 * spacing, LONGEST * length, THETAS)
+    step = tried[1] / tried[0]
+    parts = np.array([_fit(sounding, correlation, trend, theta)[1:] for theta in tried])  # log Q, log dets
+    best = tried[np.argmin((n - p) * parts[:, 0] + parts[:, 1] + parts[:, 2])]
+    near = best * step ** (3.0 * (np.arange(NEAR) + 0.5) / NEAR - 1.5)  # none of them tried before
+    parts = np.vstack([parts, [_fit(sounding, correlation, trend, theta)[1:] for theta in near]])
+    tried = np.append(tried, near)
+    order = np.argsort(tried)
+    theta = np.geomspace(tried.min(), tried.max(), FINE)
+    log_squares, logdet, trend_logdet = CubicSpline(np.log(tried[order]), parts[order])(np.log(theta)).T
     plain = -0.5 * (n * (log_squares - log(n) + 1.0 + log(2.0 * pi)) + logdet)
     free = n - p
     owed = logdet + trend_logdet
