@@ -9,6 +9,7 @@ import typer
 
 from rfmpm.cli.benchmark import benchmark
 from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY, end, ends_in_words
+from rfmpm.cli.sounding import sounding
 from rfmpm.cli.tables import cost_row, outcome_rows, print_table
 
 FRAMES_OF_AN_ANIMATION = 60
@@ -22,6 +23,7 @@ app = typer.Typer(
 )
 
 app.add_typer(benchmark, name="benchmark")
+app.command("sounding")(ends_in_words(sounding))
 
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.")]

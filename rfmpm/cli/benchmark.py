@@ -66,3 +66,11 @@ def verification() -> Write:
     from rfmpm.benchmark.verification import write
 
     return write
+
+
+@command
+def soundings() -> Write:
+    """Estimate from soundings of known scale of fluctuation: bias and coverage, soundings.md."""
+    from rfmpm.benchmark.soundings import run
+
+    return run

@@ -22,7 +22,8 @@ FLOORS = {
     2: (
         *("mpm.stages", "mpm.cells", "mpm.nonlocal_softening", "mpm.boundary", "mpm.contact", "mpm.laws", "mpm.shapes"),
         *("random_fields.methods", "random_fields.correlation", "random_fields.marginals"),
-        *("random_fields.conditioning", "random_fields.measurements", "random_fields.estimation"),
+        *("random_fields.conditioning", "random_fields.measurements"),
+        *("random_fields.sounding", "random_fields.estimation", "random_fields.variance_function"),
     ),
     1: ("mpm.state", "mpm.protocols", "study", "variables", "seeds"),
     0: ("kernel_tools", "columns"),

@@ -11,6 +11,7 @@ from synthetic import make_points, make_study
 from rfmpm import realisation
 from rfmpm.kernel_tools import Vector
 from rfmpm.random_fields import field
+from rfmpm.random_fields.measurements import measurements
 from rfmpm.report import write_field
 
 
@@ -21,17 +22,27 @@ def coarse(monkeypatch):
     def prepare(study):
         points = make_points(study, 0.0, spacing=0.5)
         places = np.column_stack([points["x_initial"], points["y_initial"]])
-        prepared = field.prepare(study.random_field["cohesion"], 20e3, places)
+        settings = study.random_field["cohesion"]
+        data = measurements(settings.data or (), settings.measurement_error, lambda kilopascal: 1e3 * kilopascal)
+        prepared = field.prepare(settings, 20e3, places, data=data)
         scene = SimpleNamespace(points=SimpleNamespace(position=Vector(*places.T)))
         return SimpleNamespace(study=study, scene=scene, fields={"cohesion": prepared})
 
     monkeypatch.setattr(realisation, "prepare", prepare)
 
 
+def numbers_of(lines: list[str]) -> dict[str, list[float]]:
+    """Asked, found, standard error and their ratio by name and lag; rows are as wide as their header."""
+    header = next(k for k, line in enumerate(lines) if "std. error" in line)
+    rows = [line for line in lines[header + 1 :] if len(line) == len(lines[header])]
+    return {line[:26].strip() + line[26:33].strip(): list(map(float, line[33:].split())) for line in rows}
+
+
 @pytest.mark.usefixtures("coarse")
 def test_table_compares_asked_and_found_and_the_picture_is_written(tmp_path):
     lines = write_field(make_study(), 3, tmp_path / "field")
-    numbers = {line[:26].strip() + line[26:33].strip(): list(map(float, line[33:].split())) for line in lines[3:]}
+    numbers = numbers_of(lines)
+    assert len(numbers) > 10
     assert numbers["mean [kPa]"][0] == 20.0
     assert numbers["standard deviation [kPa]"][0] == 5.0
     assert numbers["correlation along h6.00"][0] == pytest.approx(np.exp(-2.0), abs=1e-4)  # printed to four places
@@ -39,8 +50,27 @@ def test_table_compares_asked_and_found_and_the_picture_is_written(tmp_path):
     assert all(abs(ratio) < 4.0 for *_, ratio in numbers.values())
     for asked, found, error, ratio in numbers.values():
         assert found == pytest.approx(asked + ratio * error, abs=0.06 * error + 1e-3)
-    assert len({len(line) for line in lines[2:]}) == 1
+    assert "cholesky" in lines[0]
     with Image.open(tmp_path / "field" / "field.png") as image:
+        image.verify()
+
+
+@pytest.mark.usefixtures("coarse")
+def test_a_field_with_data_is_compared_with_the_conditional_distribution(tmp_path):
+    plain = make_study()
+    x, y = realisation.prepare(plain).scene.points.position
+    on = range(0, len(x), 40)
+    data = [{"x_m": float(x[k]), "y_m": float(y[k]), "value": 15.0 + 0.01 * k} for k in on]
+    data += [{"x_m": 3.1, "y_m": 2.2, "value": 25.0, "measurement_error": 0.1}, {"x_m": 1e4, "y_m": 0.0, "value": 20.0}]
+    study = plain.with_changes({"random_field.cohesion.data": data})
+    lines = write_field(study, 0, tmp_path)
+    numbers = numbers_of(lines)
+    assert any(name.startswith("conditional cov. along v") for name in numbers)
+    assert all(abs(ratio) < 4.0 for *_, ratio in numbers.values())  # standard errors
+    assert f"conditioned on {len(data)} data, {len(data) - 1} of them exact, {len(on)} on points" in "\n".join(lines)
+    misfit = float(re.search(r"misfit at exact data on points (\S+),", lines[-1]).group(1))
+    assert misfit < 1e-9
+    with Image.open(tmp_path / "field.png") as image:
         image.verify()
 
 
