@@ -6,7 +6,7 @@ variation V, is ln(1 + rho V^2) / ln(1 + V^2) in that space (Fenton and Griffith
 one hundredth at V = 0.25.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import radians
 from pathlib import Path
@@ -18,6 +18,7 @@ from rfmpm.random_fields.correlation import CORRELATIONS, Anisotropy
 from rfmpm.random_fields.marginals import MARGINALS, Marginal
 from rfmpm.random_fields.methods import METHODS
 from rfmpm.random_fields.store import find_or_prepare
+from rfmpm.random_fields.trend import Trend
 
 Entry = TypeVar("Entry")
 
@@ -37,14 +38,23 @@ class PreparedField:
         return METHODS[self.method].n_variables(self.record)
 
 
-def prepare(settings: Any, mean: float, points: np.ndarray, store: Path | None = None) -> PreparedField:
+def prepare(
+    settings: Any,
+    mean: float,
+    points: np.ndarray,
+    store: Path | None = None,
+    trend: Trend | None = None,
+    shared: Iterable[PreparedField] = (),
+) -> PreparedField:
     """Prepare the field of one strength parameter.
 
     Args:
         settings: the `random_field` entry of a study.
-        mean: mean of the field [Pa].
+        mean: mean of the field, at depth zero of a trend [Pa].
         points: positions, shape (n, 2) [m].
         store: folder in which what the method prepares is kept and found again; None keeps it in memory only.
+        trend: how mean and standard deviation change with depth; None: not at all.
+        shared: fields on the same points; what the method prepared for one of equal correlation serves this one too.
 
     Returns:
         the prepared field.
@@ -58,14 +68,17 @@ def prepare(settings: Any, mean: float, points: np.ndarray, store: Path | None =
         raise ValueError(f"points of shape {points.shape}: must be finite positions, shape (n, 2), n > 0")
     kernel = _choose(CORRELATIONS, settings.correlation, "correlation")
     method = _choose(METHODS, settings.method, "method")
-    marginal = _choose(MARGINALS, settings.distribution, "distribution").from_moments(
-        mean, settings.coefficient_of_variation
-    )
+    factory = _choose(MARGINALS, settings.distribution, "distribution").from_moments
+    moments = mean, settings.coefficient_of_variation
+    marginal = factory(*moments) if trend is None else trend.marginal(factory, *moments, points)
     correlation = kernel(
         theta_h=settings.scale_of_fluctuation_h_m,
         theta_v=settings.scale_of_fluctuation_v_m,
         rotation=radians(settings.rotation_deg),
     )
+    for other in shared:
+        if (other.correlation, other.method) == (correlation, settings.method):
+            return PreparedField(correlation, marginal, settings.method, other.record)
     if store is None:
         record = method.prepare(correlation, points)
     else:

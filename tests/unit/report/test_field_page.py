@@ -9,7 +9,6 @@ from PIL import Image
 from synthetic import make_points, make_study
 
 from rfmpm import realisation
-from rfmpm.kernel_tools import Vector
 from rfmpm.random_fields import field
 from rfmpm.report import write_field
 
@@ -22,8 +21,8 @@ def coarse(monkeypatch):
         points = make_points(study, 0.0, spacing=0.5)
         places = np.column_stack([points["x_initial"], points["y_initial"]])
         prepared = field.prepare(study.random_field["cohesion"], 20e3, places)
-        scene = SimpleNamespace(points=SimpleNamespace(position=Vector(*places.T)))
-        return SimpleNamespace(study=study, scene=scene, fields={"cohesion": prepared})
+        uppermost = SimpleNamespace(field=prepared, points=places, mean=20e3)
+        return SimpleNamespace(study=study, fields={"cohesion": SimpleNamespace(parts=[uppermost])})
 
     monkeypatch.setattr(realisation, "prepare", prepare)
 
