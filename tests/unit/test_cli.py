@@ -334,7 +334,7 @@ def test_python_functions_take_anything_that_is_a_study(replace, campaign, tmp_p
         "realisation",
         prepare=lambda study: study,
         simulate=lambda prepared, index, **options: (prepared, index, options),
-        realise_fields=lambda study, index, level: (study, index, level),
+        realise_fields=lambda study, index, level, xi: (study, index, level),
     )
     study = rfmpm.load_study(RANDOM)
     assert rfmpm.simulate(RANDOM, index=2, frames=3) == (study, 2, {"level": 0, "frames": 3, "homogeneous": False})
