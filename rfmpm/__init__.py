@@ -19,6 +19,7 @@ __all__ = [
     "Study",
     "StudyError",
     "__version__",
+    "draw_xi",
     "load_study",
     "open_ensemble",
     "realise_fields",
@@ -48,8 +49,10 @@ def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
 
 
-def realise_fields(study: Any, index: int = 0, level: int = 0) -> "dict[str, np.ndarray]":
-    """Realise the random fields of one realisation.
+def draw_xi(study: Any, index: int = 0, level: int = 0) -> "np.ndarray":
+    """Draw the standard-normal vector from which the fields of one realisation are made.
+
+    It depends on the seed of the study, level and index alone: on no rank and no order.
 
     Args:
         study: a Study, or anything `load_study` reads.
@@ -57,7 +60,8 @@ def realise_fields(study: Any, index: int = 0, level: int = 0) -> "dict[str, np.
         level: level of a multilevel plan; 0 for plain Monte Carlo.
 
     Returns:
-        Values at the material points by name: {"cohesion": (n_points,) [Pa]}; empty for a homogeneous study.
+        `xi`, shape (n_variables,) [-]: the parts of the properties in the order of the study, those of a property from
+        its uppermost soil down; empty for a homogeneous study.
 
     Raises:
         StudyError: with everything that is wrong with the study.
@@ -65,10 +69,43 @@ def realise_fields(study: Any, index: int = 0, level: int = 0) -> "dict[str, np.
     from rfmpm import realisation
     from rfmpm.study import load_study
 
-    return realisation.realise_fields(load_study(study), index, level=level)
+    return realisation.draw_xi(realisation.prepare(load_study(study)), index, level)
 
 
-def simulate(study: Any, index: int = 0, *, level: int = 0, frames: int = 0, homogeneous: bool = False) -> "Outcome":
+def realise_fields(
+    study: Any, index: int = 0, level: int = 0, xi: "np.ndarray | None" = None
+) -> "dict[str, np.ndarray]":
+    """Realise the random fields of one realisation.
+
+    Args:
+        study: a Study, or anything `load_study` reads.
+        index: realisation index.
+        level: level of a multilevel plan; 0 for plain Monte Carlo.
+        xi: standard-normal vector, shape (n_variables,) [-], in place of the one that `draw_xi` draws.
+
+    Returns:
+        Values at the material points by name: {"cohesion": (n_points,) [Pa]}, also "residual_cohesion" [Pa] and
+        "friction_angle" [rad] where they are random; empty for a homogeneous study.
+
+    Raises:
+        StudyError: with everything that is wrong with the study.
+        ValueError: `xi` has another length than the study's fields take.
+    """
+    from rfmpm import realisation
+    from rfmpm.study import load_study
+
+    return realisation.realise_fields(load_study(study), index, level=level, xi=xi)
+
+
+def simulate(
+    study: Any,
+    index: int = 0,
+    *,
+    level: int = 0,
+    frames: int = 0,
+    homogeneous: bool = False,
+    xi: "np.ndarray | None" = None,
+) -> "Outcome":
     """Simulate one realisation.
 
     Args:
@@ -77,18 +114,20 @@ def simulate(study: Any, index: int = 0, *, level: int = 0, frames: int = 0, hom
         level: level of a multilevel plan; 0 for plain Monte Carlo.
         frames: number of snapshots to keep on the way.
         homogeneous: take the mean strength everywhere.
+        xi: standard-normal vector in place of the one that `draw_xi` draws, as for `realise_fields`.
 
     Returns:
         The outcome: quantities, status, final points, histories and snapshots.
 
     Raises:
         StudyError: with everything that is wrong with the study.
+        ValueError: `xi` has another length than the study's fields take.
     """
     from rfmpm import realisation
     from rfmpm.study import load_study
 
     prepared = realisation.prepare(load_study(study))
-    return realisation.simulate(prepared, index, level=level, frames=frames, homogeneous=homogeneous)
+    return realisation.simulate(prepared, index, level=level, frames=frames, homogeneous=homogeneous, xi=xi)
 
 
 def run_ensemble(

@@ -58,7 +58,7 @@ def estimate(study: Study) -> dict[str, int | float]:
 
 def _seconds_per_step(prepared: realisation.Prepared, time_step: float) -> float:
     scene = prepared.scene
-    arguments = scenes.arguments(scene, scenes.release(scene, None))
+    arguments = scenes.arguments(scene, scenes.release(scene, realisation.typical_strengths(prepared)))
     started = time.perf_counter()
     now = SOLVERS[prepared.study.time.scheme](start(), TRIAL_STEPS * time_step, *arguments)
     return (time.perf_counter() - started) / max(now.step_count, 1)

@@ -1,8 +1,8 @@
 """One realisation: from (study, level, index) to one row; the only place where fields and mechanics meet."""
 
 import time
-from dataclasses import dataclass
-from math import nan
+from dataclasses import dataclass, replace
+from math import nan, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +15,7 @@ from rfmpm.mpm.solvers import SOLVERS
 from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNING, Progress, start
 from rfmpm.observer import Observer, final_state
 from rfmpm.quantities import QUANTITIES, first_minimum
-from rfmpm.random_fields import field as random_field
-from rfmpm.random_fields.measurements import measurements
+from rfmpm.random_fields import properties as random_properties
 from rfmpm.study import StudyError
 from rfmpm.variables import FAILED, STATUS, active_variables
 
@@ -27,7 +26,12 @@ class Prepared:
 
     study: Any
     scene: scenes.Scene
-    fields: dict[str, random_field.PreparedField]
+    properties: random_properties.Properties
+
+    @property
+    def fields(self) -> dict[str, random_properties.Property]:
+        """The random properties by name."""
+        return self.properties.entries
 
 
 @dataclass(frozen=True)
@@ -59,37 +63,46 @@ def prepare(study, store: Path | None = None) -> Prepared:
         StudyError: if a field cannot be made as asked, or its data contradict what is asked.
     """
     scene = scenes.build(study)
-    positions = np.column_stack(scene.points.position)
-    means = {"cohesion": getattr(study.material[0], "cohesion_kpa", 0.0) * 1e3}
-    prepared = {}
-    for name, settings in study.random_field.items():
-        data = measurements(settings.data or (), settings.measurement_error, lambda kilopascal: kilopascal * 1e3)
-        try:
-            prepared[name] = random_field.prepare(settings, means[name], positions, store, data)
-        except ValueError as error:
-            raise StudyError([f"random_field.{name}: {error}"]) from None
-    return Prepared(study, scene, prepared)
+    try:
+        properties = random_properties.prepare(study, _site(study, scene), store)
+    except ValueError as error:
+        raise StudyError([str(error)]) from None
+    return Prepared(study, scene, properties)
 
 
 def compile_kernels(prepared: Prepared) -> None:
     """Compile what the study needs, or load it from the cache, so that no realisation has to."""
     scene = prepared.scene
     advance = SOLVERS[prepared.study.time.scheme]
-    advance(start(), 0.0, *scenes.arguments(scene, scenes.release(scene, None)))
+    advance(start(), 0.0, *scenes.arguments(scene, scenes.release(scene, typical_strengths(prepared))))
 
 
-def realise_fields(study, index: int, level: int = 0) -> dict[str, np.ndarray]:
+def typical_strengths(prepared: Prepared) -> dict[str, np.ndarray]:
+    """Mean of each random property at every point, shape (n,) each; kernels compile for what is random."""
+    return random_properties.means(prepared.properties, len(prepared.scene.points.mass))
+
+
+def draw_xi(prepared: Prepared, index: int, level: int = 0) -> np.ndarray:
+    """Draw the vector `xi` of one realisation from the stream of (seed, level, index), shape (n_variables,) [-]."""
+    return seeds.standard_normal(prepared.study.study.seed, level, index, prepared.properties.n_variables)
+
+
+def realise_fields(study, index: int, level: int = 0, xi: np.ndarray | None = None) -> dict[str, np.ndarray]:
     """Make the random fields of one realisation alone.
 
     Args:
         study: the study.
         index: of the realisation.
         level: of the plan.
+        xi: standard-normal vector, shape (n_variables,); None draws it from the stream of (seed, level, index).
 
     Returns:
         Field by name, shape (n,) each, in SI units; empty for a homogeneous study.
+
+    Raises:
+        ValueError: if `xi` has another length than the study's fields take.
     """
-    return _fields(prepare(study), index, level, xi=None)
+    return _fields(prepare(study), index, level, xi)
 
 
 def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = None) -> dict[str, Any]:
@@ -115,7 +128,14 @@ def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = 
     }
 
 
-def simulate(prepared: Prepared, index: int = 0, level: int = 0, frames: int = 0, homogeneous: bool = False) -> Outcome:
+def simulate(
+    prepared: Prepared,
+    index: int = 0,
+    level: int = 0,
+    frames: int = 0,
+    homogeneous: bool = False,
+    xi: np.ndarray | None = None,
+) -> Outcome:
     """Simulate one realisation and keep its points, histories and, if asked, snapshots.
 
     Args:
@@ -123,31 +143,40 @@ def simulate(prepared: Prepared, index: int = 0, level: int = 0, frames: int = 0
         index: of the realisation.
         level: of the plan.
         frames: snapshots, evenly spread over the time up to rest; 0 for none.
-        homogeneous: leave the random field out.
+        homogeneous: leave the random fields out.
+        xi: as for `run`.
 
     Returns:
         The outcome.
     """
+    if homogeneous:
+        prepared = replace(prepared, properties=random_properties.Properties({}, None))
+        xi = None
     compile_kernels(prepared)
-    return _simulate(prepared, {} if homogeneous else _fields(prepared, index, level, None), frames)
+    return _simulate(prepared, _fields(prepared, index, level, xi), frames)
 
 
 def _fields(prepared: Prepared, index: int, level: int, xi: np.ndarray | None) -> dict[str, np.ndarray]:
-    """Realise every field from its own part of the vector `xi`."""
-    counts = [entry.n_variables for entry in prepared.fields.values()]
-    if xi is None:
-        xi = seeds.standard_normal(prepared.study.study.seed, level, index, sum(counts))
-    parts = np.split(xi, np.cumsum(counts)[:-1]) if counts else []
-    return {
-        name: random_field.realise(entry, part)
-        for (name, entry), part in zip(prepared.fields.items(), parts, strict=True)
-    }
+    return random_properties.realise(prepared.properties, draw_xi(prepared, index, level) if xi is None else xi)
+
+
+def _site(study, scene: scenes.Scene) -> random_properties.Site:
+    """Where the fields of a study are needed; a slope is at least four cells high, so no square reaches further."""
+    body, cell = scene.body, study.discretisation.cell_m
+    beyond = 0.25 * body.height if body.toe > body.crest_edge else 0.0
+    return random_properties.Site(
+        np.column_stack(scene.points.position),
+        cell,
+        cell / sqrt(study.discretisation.points_per_cell),
+        body.height,
+        (body.toe + beyond, body.height),
+    )
 
 
 def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int) -> Outcome:
     started = time.perf_counter()
     study, scene = prepared.study, prepared.scene
-    own, now = scenes.release(scene, fields.get("cohesion")), start()
+    own, now = scenes.release(scene, fields), start()
     advance, arguments = SOLVERS[study.time.scheme], scenes.arguments(scene, own)
     observer = Observer(scene, study, own.points, own.history, frames)
     while now.status == RUNNING and now.time < study.time.end_s:
@@ -156,8 +185,8 @@ def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int) ->
         observer.sample(now)
     final = observer.points()
     status, reason = _verdict(now, study, scene, final)
-    cohesion = fields.get("cohesion", getattr(scene.material, "cohesion_kpa", nan) * 1e3)
-    final["cohesion"] = np.broadcast_to(cohesion, final["x"].shape)
+    cohesion = {"cohesion": np.full(final["x"].shape, getattr(scene.material, "cohesion_kpa", nan) * 1e3)}
+    final |= cohesion | fields
     quantities = _quantities(prepared, own, final, observer, now, status)
     return Outcome(
         quantities,

@@ -26,6 +26,10 @@ def _has_surface(study) -> bool:
     return study.output.surface_bin_m is not None
 
 
+def _varies(name: str) -> Callable[[Any], bool]:
+    return lambda study: name in study.random_field
+
+
 @dataclass(frozen=True)
 class Variable:
     """One variable: its place in a file, its unit (empty for flags and texts) and its definition."""
@@ -187,8 +191,8 @@ COORDINATES = _table(
 )
 
 
-def _point(name, unit, long_name, dims=("time", "point"), **attributes) -> Variable:
-    return Variable(name, dims, "float64", unit, long_name, attributes)
+def _point(name, unit, long_name, dims=("time", "point"), is_active=_always, **attributes) -> Variable:
+    return Variable(name, dims, "float64", unit, long_name, attributes, is_active)
 
 
 POINT_VARIABLES = _table(
@@ -206,6 +210,15 @@ POINT_VARIABLES = _table(
     _point("stress_xy", "Pa", "shear stress"),
     _point("plastic_strain", "1", "plastic shear strain invariant"),
     _point("cohesion", "Pa", "peak cohesion", ("point",)),
+    _point(
+        "residual_cohesion",
+        "Pa",
+        "residual cohesion of its random field",
+        ("point",),
+        _varies("residual_cohesion"),
+        comment="Counts as far as it is below the peak cohesion.",
+    ),
+    _point("friction_angle", "rad", "peak angle of friction", ("point",), _varies("friction_angle")),
     _point("volume", "m3 m-1", "volume of the point per metre of width"),
 )
 

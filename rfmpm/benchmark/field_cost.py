@@ -8,11 +8,11 @@ from rfmpm.realisation import Prepared
 
 def prepare_field(prepared: Prepared) -> None:
     """Prepare the cohesion field of a study once more: above all its factor."""
-    settings, mean = prepared.study.random_field["cohesion"], prepared.study.material[0].cohesion_kpa * 1e3
-    random_field.prepare(settings, mean, np.column_stack(prepared.scene.points.position))
+    for part in prepared.fields["cohesion"].parts:
+        random_field.prepare(part.settings, part.mean, part.points)
 
 
 def realise_field(prepared: Prepared) -> None:
     """Realise the cohesion field of a study."""
-    field = prepared.fields["cohesion"]
-    random_field.realise(field, np.zeros(field.n_variables))
+    for part in prepared.fields["cohesion"].parts:
+        random_field.realise(part.field, np.zeros(part.field.n_variables))

@@ -125,18 +125,24 @@ def simulate(
     out: OutFolder = None,
     frames: Annotated[int, typer.Option(min=0, metavar="N", help="Snapshots to keep on the way.")] = 0,
     animate: Annotated[bool, typer.Option("--animate", help="Write an animation (60 frames unless given).")] = False,
+    xi: Annotated[
+        Path | None, typer.Option("--xi", metavar="FILE", help="Random vector from a file of field --write-xi.")
+    ] = None,
 ) -> None:
     """Simulate one realisation: snapshots, picture, animation."""
     from rfmpm.study import load_study
 
     settings = load_study(study)
-    name = "simulation_homogeneous" if homogeneous else f"simulation_{index}"
+    if xi is not None and (homogeneous or not settings.random_field):
+        end("--xi: there is no random field to make of it; leave the option out", WRONG_STUDY)
+    name = "simulation_homogeneous" if homogeneous else f"simulation_{index if xi is None else xi.stem}"
     folder = _writable(out or Path(settings.output.directory) / name)
     from rfmpm import realisation, report, results
 
     frames = frames or (FRAMES_OF_AN_ANIMATION if animate else 0)
     prepared = realisation.prepare(settings)
-    outcome = realisation.simulate(prepared, index, frames=frames, homogeneous=homogeneous)
+    vector = None if xi is None else _read_xi(xi, prepared)
+    outcome = realisation.simulate(prepared, index, frames=frames, homogeneous=homogeneous, xi=vector)
     written = [folder / "simulation.nc", folder / "simulation.png"]
     results.write_simulation(written[0], outcome, settings)
     report.write_simulation_picture(outcome, settings, written[1])
@@ -152,8 +158,24 @@ def simulate(
         end(f"the realisation failed: {outcome.status}, {outcome.reason}", TOO_MANY_FAILED)
 
 
+def _read_xi(path: Path, prepared: Any) -> Any:
+    from rfmpm import results
+
+    try:
+        return results.read_xi(path, prepared.properties.n_variables)
+    except ValueError as error:
+        end(str(error), WRONG_STUDY)
+
+
 @command
-def field(study: StudyFile, index: Index = 0, out: OutFolder = None) -> None:
+def field(
+    study: StudyFile,
+    index: Index = 0,
+    out: OutFolder = None,
+    write_xi: Annotated[
+        Path | None, typer.Option("--write-xi", metavar="FILE", help="Keep the realisation's random vector (.npy) too.")
+    ] = None,
+) -> None:
     """Realise the random field alone: picture, sample statistics against the asked ones."""
     from rfmpm.study import StudyError, load_study
 
@@ -166,6 +188,11 @@ def field(study: StudyFile, index: Index = 0, out: OutFolder = None) -> None:
     for line in report.write_field(settings, index, folder):
         typer.echo(line)
     typer.echo(folder / "field.png")
+    if write_xi is not None:
+        from rfmpm import draw_xi, results
+
+        results.write_xi(write_xi, draw_xi(settings, index))
+        typer.echo(write_xi)
 
 
 @command

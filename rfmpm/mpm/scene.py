@@ -1,5 +1,6 @@
 """A scene: everything that realisations of one study share, and what one of them starts from."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf, pi, sqrt
 from typing import NamedTuple
@@ -97,18 +98,19 @@ class Released(NamedTuple):
     averaging: Averaging | None
 
 
-def release(scene: Scene, cohesion: np.ndarray | None) -> Released:
+def release(scene: Scene, strengths: Mapping[str, np.ndarray] | None) -> Released:
     """Make what one realisation changes or owns.
 
     Args:
         scene: the scene.
-        cohesion: peak cohesion of each point, shape (n,) [Pa]; None for the material's own.
+        strengths: what varies from point to point, by name, arrays of shape (n,) in SI units, as the laws' `build`
+            takes them; None for the material's own.
 
     Returns:
         What it owns.
     """
     count = len(scene.points.mass)
-    law, history = LAWS[scene.material.law].build(scene.material, scene.cell, count, cohesion)
+    law, history = LAWS[scene.material.law].build(scene.material, scene.cell, count, strengths or {})
     cells = make_cells(count, scene.axes) if scene.cell_means else None
     means = None
     if isinstance(history, NonlocalHistory):

@@ -6,7 +6,7 @@ variation V, is ln(1 + rho V^2) / ln(1 + V^2) in that space (Fenton and Griffith
 one hundredth at V = 0.25.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import radians
 from pathlib import Path
@@ -20,6 +20,7 @@ from rfmpm.random_fields.marginals import MARGINALS, Marginal
 from rfmpm.random_fields.measurements import Measurements, distinct, standard_normal_data
 from rfmpm.random_fields.methods import AUTO, METHODS, choose
 from rfmpm.random_fields.store import find_or_prepare
+from rfmpm.random_fields.trend import Trend
 
 Entry = TypeVar("Entry")
 
@@ -47,15 +48,23 @@ class PreparedField:
 
 
 def prepare(
-    settings: Any, mean: float, points: np.ndarray, store: Path | None = None, data: Measurements | None = None
+    settings: Any,
+    mean: float,
+    points: np.ndarray,
+    store: Path | None = None,
+    trend: Trend | None = None,
+    shared: Iterable[PreparedField] = (),
+    data: Measurements | None = None,
 ) -> PreparedField:
     """Prepare the field of one strength parameter.
 
     Args:
         settings: the `random_field` entry of a study.
-        mean: mean of the field [Pa].
+        mean: mean of the field, at depth zero of a trend [Pa].
         points: positions, shape (n, 2) [m].
         store: folder in which what the method prepares is kept and found again; None keeps it in memory only.
+        trend: how mean and standard deviation change with depth; None: not at all.
+        shared: fields on the same points; what the method prepared for one of equal correlation serves this one too.
         data: measured values that every realisation agrees with; None, or none of them, for an unconditional field.
 
     Returns:
@@ -70,22 +79,28 @@ def prepare(
     if points.ndim != 2 or points.shape[1] != 2 or len(points) == 0 or not np.all(np.isfinite(points)):
         raise ValueError(f"points of shape {points.shape}: must be finite positions, shape (n, 2), n > 0")
     kernel = _choose(CORRELATIONS, settings.correlation, "correlation")
-    marginal = _choose(MARGINALS, settings.distribution, "distribution").from_moments(
-        mean, settings.coefficient_of_variation
-    )
+    factory = _choose(MARGINALS, settings.distribution, "distribution").from_moments
+    moments = mean, settings.coefficient_of_variation
+
+    def marginal_at(places: np.ndarray) -> Marginal:
+        return factory(*moments) if trend is None else trend.marginal(factory, *moments, places)
+
+    marginal = marginal_at(points)
     correlation = kernel(
         theta_h=settings.scale_of_fluctuation_h_m,
         theta_v=settings.scale_of_fluctuation_v_m,
         rotation=radians(settings.rotation_deg),
     )
     name = choose(correlation, points) if settings.method == AUTO else settings.method
-    method = _choose(METHODS, name, "method")
-    kept = store is not None
-    record = find_or_prepare(name, correlation, points, store) if kept else method.prepare(correlation, points)
+    record = next((other.record for other in shared if (other.correlation, other.method) == (correlation, name)), None)
+    if record is None:
+        method = _choose(METHODS, name, "method")
+        kept = store is not None
+        record = find_or_prepare(name, correlation, points, store) if kept else method.prepare(correlation, points)
     if data is None or len(data.values) == 0:
         return PreparedField(correlation, marginal, name, record)
     data = distinct(data)
-    conditioning = condition(correlation, points, standard_normal_data(marginal, data))
+    conditioning = condition(correlation, points, standard_normal_data(marginal_at(data.places), data))
     return PreparedField(correlation, marginal, name, record, data, conditioning)
 
 

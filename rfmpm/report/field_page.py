@@ -43,10 +43,9 @@ def write_field(study, index: int, directory: Path) -> list[str]:
     if "cohesion" not in study.random_field:
         return ["no random field in this study: every realisation is the same"]
     settings = study.random_field["cohesion"]
-    mean = next(m.cohesion_kpa for m in study.material if m.name == settings.material) * 1000.0
     prepared = realisation.prepare(study)
-    field, position = prepared.fields["cohesion"], prepared.scene.points.position
-    points = np.column_stack([position.x, position.y])
+    uppermost = prepared.fields["cohesion"].parts[0]
+    field, points, mean = uppermost.field, uppermost.points, uppermost.mean
     xis = [standard_normal(study.study.seed, 0, i, field.n_variables) for i in range(index, index + SAMPLE)]
     records = statistics(field, settings, mean, points, xis)
     sample = np.array([realise(field, xi) for xi in xis]) / 1000.0

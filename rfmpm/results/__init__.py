@@ -12,6 +12,7 @@ from rfmpm.results.netcdf import (
 )
 from rfmpm.results.provenance import global_attributes, source_hash, versions
 from rfmpm.results.simulation import write_simulation
+from rfmpm.results.xi import read_xi, write_xi
 
 __all__ = [
     "ENSEMBLE_FILE",
@@ -21,9 +22,11 @@ __all__ = [
     "global_attributes",
     "open_ensemble",
     "read_rows",
+    "read_xi",
     "source_hash",
     "versions",
     "write_dataset",
     "write_rows",
     "write_simulation",
+    "write_xi",
 ]

@@ -4,11 +4,12 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from math import sqrt
 
+from rfmpm.study.correlation_checks import CORRELATION_CHECKS
 from rfmpm.study.data_file import contradictions
 from rfmpm.study.errors import Problem
+from rfmpm.study.field_checks import FIELD_CHECKS
 from rfmpm.study.known import Known, Unknown, problem
 from rfmpm.study.material_checks import MATERIAL_CHECKS
-from rfmpm.study.schema import one_of
 from rfmpm.study.size_checks import SIZE_CHECKS
 
 LARGEST_CELL_OVER_LENGTH = 1.0  # of a softening length; the transfer itself averages over 0.7 cells
@@ -90,21 +91,6 @@ def _names_are_unique(known: Known) -> Iterator[Problem]:
             yield problem(known, f"material.{last}.name", f"is the name of {count} materials; names must differ")
 
 
-def _field_has_its_material(known: Known) -> Iterator[Problem]:
-    for variable in known["random_field"]:
-        key = f"random_field.{variable}.material"
-        asked = known[key]
-        laws = {known[f"material.{i}.name"]: known[f"material.{i}.law"] for i in range(len(known["material"]))}
-        if not laws:
-            return
-        strong = [name for name, law in laws.items() if law != "elastic"]
-        if asked not in laws:
-            yield problem(known, key, f"names no material; must be {one_of(list(laws), asked)}")
-        elif asked not in strong:
-            text = f'is a material with law = "{laws[asked]}", which has no {variable}'
-            yield problem(known, key, text)
-
-
 def _truncated_normal_can_spread_so(known: Known) -> Iterator[Problem]:
     for variable in known["random_field"]:
         key = f"random_field.{variable}.coefficient_of_variation"
@@ -138,8 +124,9 @@ CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _softening_has_one_length,
     _there_is_one_material,
     _names_are_unique,
-    _field_has_its_material,
     _truncated_normal_can_spread_so,
     _data_agree,
     *MATERIAL_CHECKS,
+    *FIELD_CHECKS,
+    *CORRELATION_CHECKS,
 ]

@@ -90,21 +90,10 @@ def _softening_does_not_snap_back(known: Known) -> Iterator[Problem]:
             yield problem(known, f"{material}.residual_plastic_strain", text)
 
 
-def _random_cohesion_has_a_mean(known: Known) -> Iterator[Problem]:
-    if "cohesion" not in known["random_field"]:
-        return
-    name = known["random_field.cohesion.material"]
-    for material in _frictional(known):
-        if known[f"{material}.name"] == name and known[f"{material}.cohesion_kpa"] == 0.0:
-            text = "must be greater than 0, the mean of its random field"
-            yield problem(known, f"{material}.cohesion_kpa", text)
-
-
 MATERIAL_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _residuals_are_below_the_peaks,
     _dilation_is_below_friction,
     _there_is_some_strength,
     _softening_says_how_fast,
     _softening_does_not_snap_back,
-    _random_cohesion_has_a_mean,
 ]

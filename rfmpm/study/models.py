@@ -2,30 +2,13 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, Strict
+from pydantic import BeforeValidator, Field, Strict
 
+from rfmpm.study.field_models import FieldLayer
+from rfmpm.study.kinds import Inclination, Length, NotNegative, Number, Positive, Table, Text, whole
 from rfmpm.study.schema import Hint
 
-Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
-Positive = Annotated[Number, Field(gt=0)]
-NotNegative = Annotated[Number, Field(ge=0)]
-Length = Annotated[Number, Field(gt=0, le=1e6)]
-Inclination = Annotated[Number, Field(ge=0, le=80)]
-Text = Annotated[str, Strict(), Field(pattern=r"\S")]
 LARGEST_SEED = 2**63 - 1  # what a NetCDF attribute holds
-
-
-def _whole(value: object) -> object:
-    # A choice among integers compares with ==, for which 4.0 is 4 and true is 1.
-    if type(value) is not int:
-        raise ValueError("not a whole number")
-    return value
-
-
-class Table(BaseModel):
-    """A table of the study file: immutable, and a key it does not know is an error."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class Campaign(Table):
@@ -62,7 +45,7 @@ class Discretisation(Table):
     """[discretisation]"""
 
     cell_m: Annotated[Number, Field(ge=1e-6, le=1e6)] = Field(description="Side of the square cells [m]")
-    points_per_cell: Annotated[Literal[1, 4, 9, 16], BeforeValidator(_whole)] = Field(
+    points_per_cell: Annotated[Literal[1, 4, 9, 16], BeforeValidator(whole)] = Field(
         description="Material points in a full cell"
     )
     shape: Literal["linear", "gimp", "quadratic_bspline", "cubic_bspline"] = Field(description="Shape function")
@@ -245,6 +228,23 @@ class RandomField(Table):
     )
     measurement_error: NotNegative | None = Field(
         None, le=2, description="Coefficient of variation of the error of the data [1]. Default: exact"
+    )
+    trend_kpa_per_m: Number | None = Field(
+        None, description="Gain of the mean per metre below the level of the crest [kPa/m]; left out: no trend"
+    )
+    standard_deviation_trend_kpa_per_m: Number | None = Field(
+        None,
+        description="Gain of the standard deviation per metre below the crest [kPa/m]; 0: the same at every depth; "
+        "left out: proportional to the mean",
+    )
+    layer: tuple[FieldLayer, ...] | None = Field(
+        None, description="Layers below the soil that the keys above describe, from the top down"
+    )
+    reference_cell_m: Length | None = Field(
+        None, description="Cell size whose points carry the field, the same for every cell_m; left out: cell_m's own"
+    )
+    reference_value: Literal["mean", "point"] | None = Field(
+        None, description="What a larger cell's point takes of the reference: mean over its square (default), or point"
     )
 
 

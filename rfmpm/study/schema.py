@@ -110,7 +110,7 @@ def allowed(annotation: Any, info: FieldInfo | None, with_type: bool = True) -> 
     elif members := tables(kind):
         words = _table_in_words(members)
     elif get_origin(kind) is tuple:
-        words = "a list of tables"
+        words = _list_in_words(get_args(kind))
     elif get_origin(kind) is dict:
         words = "a table of tables"
     else:
@@ -137,6 +137,12 @@ def one_of(options: Sequence, value: Any = None) -> str:
         else None
     )
     return f"{listed} (did you mean {shown(meant)}?)" if meant else listed
+
+
+def _list_in_words(members: Sequence) -> str:
+    if tables(members[0]):
+        return "a list of tables"
+    return f"a list of {len(members)}, each {allowed(members[0], None)}"
 
 
 def _table_in_words(members: Sequence[type[BaseModel]]) -> str:

@@ -60,18 +60,30 @@ def _body(known: Known) -> tuple[float, float, float]:
 def _points_are_affordable(known: Known) -> Iterator[Problem]:
     cell, per_cell = known["discretisation.cell_m"], known["discretisation.points_per_cell"]
     count = _body(known)[0] / cell**2 * per_cell
-    fields = known["random_field"]
     if count > LARGEST_POINT_COUNT:
         yield problem(known, "discretisation.cell_m", _too_many("material points", count, LARGEST_POINT_COUNT, cell))
-    elif "cohesion" in fields and count > LARGEST_CHOLESKY_COUNT:
-        method = "random_field.cohesion.method"
-        if known[method] == "cholesky":
+        return
+    for variable in known["random_field"]:
+        method, reference = f"random_field.{variable}.method", known[f"random_field.{variable}.reference_cell_m"]
+        carriers = count if reference is None else _lattice_points(known, f"random_field.{variable}")
+        if known[method] == "cholesky" and carriers > LARGEST_CHOLESKY_COUNT:
+            what, key = ("material", "discretisation.cell_m") if reference is None else ("lattice", "reference_cell_m")
             text = (
-                f"{count:,.0f} material points need a dense factor of {count**2 * 8 / 1e9:,.1f} GB; at most "
-                f"{LARGEST_CHOLESKY_COUNT:,} points: take discretisation.cell_m of at least "
-                f"{cell * sqrt(count / LARGEST_CHOLESKY_COUNT):.3g}, or fewer discretisation.points_per_cell"
+                f"{carriers:,.0f} {what} points need a dense factor of {carriers**2 * 8 / 1e9:,.1f} GB; at most "
+                f"{LARGEST_CHOLESKY_COUNT:,} points: take {key} of at least "
+                f"{(reference or cell) * sqrt(carriers / LARGEST_CHOLESKY_COUNT):.3g}, or fewer "
+                "discretisation.points_per_cell"
             )
             yield problem(known, method, text)
+
+
+def _lattice_points(known: Known, field: str) -> float:
+    """Points of the reference lattice that carries a field."""
+    _, length, height = _body(known)
+    beyond = 0.25 * height if known["geometry.kind"] == "slope" else 0.0
+    count = (length + beyond) * height / known[f"{field}.reference_cell_m"] ** 2
+    per_square = 4 if known[f"{field}.reference_value"] == "point" else 1
+    return count * known["discretisation.points_per_cell"] * per_square
 
 
 def _cells_are_affordable(known: Known) -> Iterator[Problem]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from copy import deepcopy
 from numbers import Integral, Real
 from os import PathLike, fspath
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import tomli_w
 from pydantic import BaseModel, Field
@@ -14,6 +14,8 @@ from pydantic import BaseModel, Field
 from rfmpm.study.checks import joint_problems
 from rfmpm.study.diagnosis import Diagnosis
 from rfmpm.study.errors import Problem, StudyError
+from rfmpm.study.field_models import FieldCorrelation, Property
+from rfmpm.study.kinds import Table
 from rfmpm.study.known import Known, path_of
 from rfmpm.study.models import (
     Boundary,
@@ -25,7 +27,6 @@ from rfmpm.study.models import (
     Output,
     Quantities,
     RandomField,
-    Table,
     Time,
 )
 from rfmpm.study.schema import Hint
@@ -54,8 +55,11 @@ class Study(Table):
     discretisation: Discretisation
     boundary: Boundary
     material: Annotated[tuple[Material, ...], Hint("written [[material]]")] = Field(description="The materials: one")
-    random_field: dict[Literal["cohesion"], RandomField] = Field(
+    random_field: dict[Property, RandomField] = Field(
         default_factory=dict, description="The random variables; left out: a homogeneous slope"
+    )
+    random_field_correlation: tuple[FieldCorrelation, ...] | None = Field(
+        None, description="Correlation between random fields; left out: they are independent"
     )
     time: Time
     quantities: Quantities = Quantities()

@@ -82,7 +82,7 @@ def one_point(name):
     """Law and history of one point, as records of scalars."""
     model = next(m for m in get_args(get_args(Material)[0]) if name in get_args(m.model_fields["law"].annotation))
     material = model(law=name, **{key: value for key, value in VALUES.items() if key in model.model_fields})
-    law, history = LAWS[name].build(material, 0.25, 1, None)
+    law, history = LAWS[name].build(material, 0.25, 1, {})
     return at(law, 0), at(history, 0)
 
 

@@ -84,7 +84,8 @@ def test_a_stress_that_is_not_a_number_is_a_status(prepared, name):
 
 def test_a_cohesion_that_is_not_a_number_is_a_status(prepared, monkeypatch):
     release = scenes.release
-    monkeypatch.setattr(scenes, "release", lambda scene, cohesion: release(scene, cohesion * np.nan))
+    nothing = {"cohesion": np.full(len(prepared.scene.points.mass), np.nan)}
+    monkeypatch.setattr(scenes, "release", lambda scene, strengths: release(scene, nothing))
     assert_failed(realisation.run(prepared, 0), "diverged")
 
 

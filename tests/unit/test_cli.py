@@ -216,7 +216,7 @@ def test_simulate_prints_quantities_with_units_and_the_paths(simulation, tmp_pat
     assert "model time at which the body came to rest unknown" in lines
     assert lines[-4:-2] == ["steps 12,345", "wall time 8.25 s"]
     assert lines[-2:] == [str(tmp_path / "simulation.nc"), str(tmp_path / "simulation.png")]
-    assert (simulation.index, simulation.options) == (3, {"frames": 0, "homogeneous": False})
+    assert (simulation.index, simulation.options) == (3, {"frames": 0, "homogeneous": False, "xi": None})
 
 
 @pytest.mark.parametrize(
@@ -255,6 +255,33 @@ def test_folder_that_cannot_be_made_is_refused_before_the_simulation(simulation,
     assert result.exit_code == 2
     assert str(tmp_path / "file") in result.stderr
     assert not hasattr(simulation, "index")
+
+
+def test_xi_of_a_file_gives_the_realisation_it_was_written_of(tmp_path):
+    coarse = tmp_path / "coarse.toml"
+    study = rfmpm.load_study(CONFIGS.parent / "tests" / "robustness" / "coarse.toml")
+    coarse.write_text(study.with_changes({"time.end_s": 0.3}).to_toml())
+    file = tmp_path / "five.npy"
+    result = call("field", coarse, "--index", 5, "--out", tmp_path, "--write-xi", file)
+    assert result.exit_code == 0, result.output
+    assert result.stdout.splitlines()[-1] == str(file)
+    expected = rfmpm.realise_fields(coarse, index=5)["cohesion"]
+    assert rfmpm.realise_fields(coarse, xi=np.load(file))["cohesion"].tobytes() == expected.tobytes()
+    result = call("simulate", coarse, "--xi", file, "--out", tmp_path)
+    assert result.exit_code == 0, result.output
+    with xr.open_dataset(tmp_path / "simulation.nc") as simulation:
+        np.testing.assert_array_equal(simulation["cohesion"], expected)
+    np.save(file, np.zeros(3))
+    result = call("simulate", coarse, "--xi", file, "--out", tmp_path)
+    assert result.exit_code == 2
+    assert "fields take" in result.stderr
+
+
+@pytest.mark.parametrize("arguments", [[HOMOGENEOUS], [RANDOM, "--homogeneous"]])
+def test_xi_without_a_field_is_refused(simulation, tmp_path, arguments):
+    result = call("simulate", *arguments, "--xi", tmp_path / "xi.npy", "--out", tmp_path)
+    assert result.exit_code == 2
+    assert "--xi: there is no random field" in result.stderr
 
 
 # --- the other commands
@@ -334,10 +361,14 @@ def test_python_functions_take_anything_that_is_a_study(replace, campaign, tmp_p
         "realisation",
         prepare=lambda study: study,
         simulate=lambda prepared, index, **options: (prepared, index, options),
-        realise_fields=lambda study, index, level: (study, index, level),
+        realise_fields=lambda study, index, level, xi: (study, index, level),
     )
     study = rfmpm.load_study(RANDOM)
-    assert rfmpm.simulate(RANDOM, index=2, frames=3) == (study, 2, {"level": 0, "frames": 3, "homogeneous": False})
+    assert rfmpm.simulate(RANDOM, index=2, frames=3) == (
+        study,
+        2,
+        {"level": 0, "frames": 3, "homogeneous": False, "xi": None},
+    )
     assert rfmpm.realise_fields(RANDOM, index=1) == (study, 1, 0)
     rfmpm.run_ensemble(RANDOM, realisations=32, directory=tmp_path, workers=1)
     assert campaign.study.study.realisations == 32

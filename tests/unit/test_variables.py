@@ -18,7 +18,7 @@ from rfmpm.variables import (
 
 COARSE = Path(__file__).parents[1] / "robustness" / "coarse.toml"
 TABLES = (VARIABLES, COORDINATES, POINT_VARIABLES, HISTORY_VARIABLES)
-UNIT = re.compile(r"1|(kg|m|s|J|Pa)-?\d*( (kg|m|s)-?\d*)*")
+UNIT = re.compile(r"1|rad|(kg|m|s|J|Pa)-?\d*( (kg|m|s)-?\d*)*")
 CONTRACT = {
     "run_out": "m", "retrogression_distance": "m", "retrogression_censored": "", "failure_volume": "m3 m-1",
     "initial_failure_volume": "m3 m-1", "influence_distance": "m", "block_count": "1", "status": "",

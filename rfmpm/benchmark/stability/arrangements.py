@@ -74,8 +74,10 @@ def contrast(pattern: str, ratio: float, prepared: Prepared) -> Prepared:
     }[pattern]
     mean = prepared.study.material[0].cohesion_kpa * 1e3
     values = np.where(is_weak, mean / np.sqrt(ratio), mean * np.sqrt(ratio))
-    field = replace(prepared.fields["cohesion"], marginal=Pattern(values))
-    return replace(prepared, fields={"cohesion": field})
+    (part,) = prepared.fields["cohesion"].parts
+    part = replace(part, field=replace(part.field, marginal=Pattern(values)))
+    entries = {"cohesion": replace(prepared.fields["cohesion"], parts=(part,))}
+    return replace(prepared, properties=replace(prepared.properties, entries=entries))
 
 
 def _with_points(prepared: Prepared, points: Points) -> Prepared:

@@ -121,7 +121,7 @@ def yield_excess(outcome: Outcome, prepared: Prepared) -> float:
         The largest change of stress of any point over the size of its stress [-]; 0 inside the surface.
     """
     points = outcome.points
-    own = release(prepared.scene, points["cohesion"])
+    own = release(prepared.scene, {name: points[name] for name in ("cohesion", *prepared.fields)})
     law, history, held = own.law, own.history, 0.0
     if getattr(law, "viscosity", 0.0) > 0.0:
         speed = np.hypot(points["velocity_x"], points["velocity_y"]).max()

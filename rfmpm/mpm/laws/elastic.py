@@ -34,6 +34,6 @@ class Elastic(NamedTuple):
         return hooke(self.lame, self.shear, stress, strain_increment), history
 
     @classmethod
-    def build(cls, material, cell, count, cohesion):
+    def build(cls, material, cell, count, strengths):
         """Make the law and its history from a study's material; arguments as for `VonMises.build`."""
         return cls(*lame_constants(material.youngs_modulus_kpa * 1e3, material.poissons_ratio)), None

@@ -8,13 +8,14 @@ the plane does not fall below zero and shearing does not dilate it (after Dunatu
 density). Without this, soil that flew apart would be stiff on landing at whatever volume it then has.
 """
 
-from math import radians, sqrt
+from math import radians, sqrt, tan
 from typing import NamedTuple
 
 import numpy as np
 
 from rfmpm.kernel_tools import Tensor, inlined
 from rfmpm.mpm.laws.elastic import hooke, lame_constants
+from rfmpm.mpm.laws.strengths import cohesions
 
 THIRD = 1.0 / 3.0
 SMALLEST = 1e-300  # [Pa]; keeps the direction of a stress without direction finite
@@ -22,7 +23,7 @@ SINE_SERIES = tuple(-1.0 / (k * (k + 1.0)) for k in range(2, 18, 2))  # from one
 
 
 class Angle(NamedTuple):
-    """An angle of friction or dilation on its way from peak to residual, the same for all points."""
+    """An angle of friction or dilation on its way from peak to residual, per point or uniform."""
 
     peak: float  # [rad]
     residual: float  # [rad]
@@ -105,15 +106,22 @@ class FrictionalLaw(NamedTuple):
     softening: float  # one over the plastic strain at which the residual is reached; 0 for no softening [-]
 
     @classmethod
-    def build(cls, material, cell, count, cohesion):
+    def build(cls, material, cell, count, strengths):
         """Make the law and its history from a study's material; arguments and results as for `VonMises.build`.
+
+        `strengths` may hold friction_angle [rad] too: the peak. The tangents of its residual and of the angles of
+        dilation are proportional to its tangent, point by point, so that dilation stays below friction.
 
         The plastic strain at which the residual is reached is divided by cell over reference cell, where the material
         names one. The residual cohesion is proportional to the peak, point by point.
         """
         lame, shear = lame_constants(material.youngs_modulus_kpa * 1e3, material.poissons_ratio)
-        peak = np.full(count, material.cohesion_kpa * 1e3) if cohesion is None else np.asarray(cohesion)
-        ratio = material.residual_cohesion_kpa / material.cohesion_kpa if material.cohesion_kpa > 0.0 else 1.0
+        peak, residual = cohesions(material, count, strengths)
+        friction = material.friction_angle_deg, material.residual_friction_angle_deg
+        dilation = material.dilation_angle_deg, material.residual_dilation_angle_deg
+        scale = None
+        if "friction_angle" in strengths:
+            scale = np.tan(strengths["friction_angle"]) / tan(radians(material.friction_angle_deg))
         softening = 0.0
         if material.residual_plastic_strain is not None:
             softening = 1.0 / material.residual_plastic_strain
@@ -123,10 +131,17 @@ class FrictionalLaw(NamedTuple):
             lame,
             shear,
             peak,
-            peak * ratio,
-            Angle(radians(material.friction_angle_deg), radians(material.residual_friction_angle_deg)),
-            Angle(radians(material.dilation_angle_deg), radians(material.residual_dilation_angle_deg)),
+            residual,
+            Angle(*(_angle(degrees, scale) for degrees in friction)),
+            Angle(*(_angle(degrees, scale) for degrees in dilation)),
             np.inf if material.tension_cutoff_kpa is None else material.tension_cutoff_kpa * 1e3,
             softening,
         )
         return law, FrictionalHistory(np.zeros(count), np.zeros(count))
+
+
+def _angle(degrees, scale):
+    """An angle [rad], its tangent times `scale` point by point; None leaves it, and what is zero, uniform."""
+    if scale is None or degrees == 0.0:
+        return radians(degrees)
+    return np.arctan(scale * tan(radians(degrees)))

@@ -8,6 +8,7 @@ import numpy as np
 from rfmpm.kernel_tools import Tensor
 from rfmpm.mpm.laws.elastic import hooke, lame_constants
 from rfmpm.mpm.laws.history import NonlocalHistory, PlasticHistory
+from rfmpm.mpm.laws.strengths import cohesions
 from rfmpm.mpm.protocols import grown, local_share, softening_strain
 
 THIRD = 1.0 / 3.0
@@ -47,21 +48,22 @@ class VonMises(NamedTuple):
         return relaxed, grown(history, g * PER_STRAIN)
 
     @classmethod
-    def build(cls, material, cell, count, cohesion):
+    def build(cls, material, cell, count, strengths):
         """Make the law and its history from a study's material.
 
         Args:
             material: the study's material.
             cell: side of a cell [m]; the softening modulus is scaled with it where the material names a reference.
             count: number of points.
-            cohesion: peak cohesion of each point, shape (count,) [Pa]; None for the material's own.
+            strengths: what varies from point to point, by name, arrays of shape (count,): cohesion and
+                residual_cohesion [Pa]. The rest is the material's own; a residual that is not given is proportional to
+                the peak, and one that is given counts as far as it is below the peak.
 
         Returns:
             The law and a fresh history, with arrays of shape (count,).
         """
         lame, shear = lame_constants(material.youngs_modulus_kpa * 1e3, material.poissons_ratio)
-        peak = np.full(count, material.cohesion_kpa * 1e3) if cohesion is None else np.asarray(cohesion)
-        residual = peak * (material.residual_cohesion_kpa / material.cohesion_kpa)
+        peak, residual = cohesions(material, count, strengths)
         softening = material.softening_modulus_kpa * 1e3
         if material.softening_reference_cell_m is not None:
             softening *= cell / material.softening_reference_cell_m

@@ -87,7 +87,7 @@ def test_contrast_is_between_neighbours_and_of_the_ratio():
     prepared = arrangements.contrast(
         "every other point", 1000.0, realisation.prepare(Case("a", "b", SHORT | fields).study())
     )
-    values = prepared.fields["cohesion"].marginal.transform(None)
+    values = prepared.fields["cohesion"].parts[0].field.marginal.transform(None)
     # identity: the ratio is a product of two roots
     assert values.max() / values.min() == pytest.approx(1000.0, rel=1e-12)
     first, second = np.argsort(np.column_stack(prepared.scene.points.position) @ [1.0, 1e6])[:2]

@@ -28,9 +28,9 @@ SOIL = {
 MODELS = {"mohr_coulomb": MohrCoulombMaterial, "drucker_prager": DruckerPragerMaterial}
 
 
-def build(law, cell=CELL, count=1, cohesion=None, **changes):
+def build(law, cell=CELL, count=1, strengths=None, **changes):
     """Law and history of `count` points."""
-    return LAWS[law].build(MODELS[law](law=law, **SOIL | changes), cell, count, cohesion)
+    return LAWS[law].build(MODELS[law](law=law, **SOIL | changes), cell, count, strengths or {})
 
 
 def one_point(law, **changes):

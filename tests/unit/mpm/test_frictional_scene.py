@@ -57,7 +57,7 @@ def test_random_cohesion_is_the_peak_of_each_point_and_its_residual_follows(law)
     study = slope(law)
     cohesion = rfmpm.realise_fields(study, index=3)["cohesion"]
     assert cohesion.std() > 500.0
-    soil = scenes.release(scenes.build(study), cohesion).law
+    soil = scenes.release(scenes.build(study), {"cohesion": cohesion}).law
     np.testing.assert_array_equal(soil.peak, cohesion)
     np.testing.assert_allclose(soil.residual, 0.25 * cohesion, rtol=1e-12)
 

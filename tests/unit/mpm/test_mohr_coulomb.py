@@ -146,7 +146,7 @@ def test_strain_at_the_residual_shrinks_with_the_cell_where_a_reference_is_named
 
 def test_a_field_of_peaks_brings_residuals_in_proportion():
     peaks = np.array([2e3, 5e3, 11e3])
-    law, history = build(LAW, count=3, cohesion=peaks, friction_angle_deg=0.0, residual_cohesion_kpa=1.0,
+    law, history = build(LAW, count=3, strengths={"cohesion": peaks}, friction_angle_deg=0.0, residual_cohesion_kpa=1.0,
                          residual_plastic_strain=0.1)  # fmt: skip
     for point, peak in enumerate(peaks):
         strong, _ = update_stress(at(law, point), NOTHING, Tensor(0.0, 0.0, 0.0, 0.5), at(history, point), 1e-3)

@@ -20,7 +20,7 @@ IDENTITY = 1e-12
 STEP = 1e-3  # [s]
 
 
-def law_and_history(cell=CELL, cohesion=None, count=1, **changes):
+def law_and_history(cell=CELL, strengths=None, count=1, **changes):
     material = VonMisesMaterial(
         name="clay",
         law="von_mises",
@@ -29,7 +29,7 @@ def law_and_history(cell=CELL, cohesion=None, count=1, **changes):
         poissons_ratio=POISSON,
         **{"cohesion_kpa": 20.0, "residual_cohesion_kpa": 4.0, "softening_modulus_kpa": 50.0} | changes,
     )
-    return VonMises.build(material, cell, count, cohesion)
+    return VonMises.build(material, cell, count, strengths or {})
 
 
 def strained(direction, amount, steps=1, **options):
@@ -119,7 +119,7 @@ def test_sqrt_3j2_convention_yields_where_sqrt_3j2_is_the_cohesion(strain):
 
 def test_a_field_of_peaks_brings_residuals_in_proportion():
     peaks = np.array([10e3, 20e3, 45e3])
-    law, history = law_and_history(cohesion=peaks, count=3)
+    law, history = law_and_history(strengths={"cohesion": peaks}, count=3)
     for point, peak in enumerate(peaks):
         start = at(history, point)
         weakest, _ = update_stress(at(law, point), NOTHING, Tensor(0.0, 0.0, 0.0, 50.0), start, STEP)

@@ -9,7 +9,6 @@ from PIL import Image
 from synthetic import make_points, make_study
 
 from rfmpm import realisation
-from rfmpm.kernel_tools import Vector
 from rfmpm.random_fields import field
 from rfmpm.random_fields.measurements import measurements
 from rfmpm.report import write_field
@@ -25,8 +24,8 @@ def coarse(monkeypatch):
         settings = study.random_field["cohesion"]
         data = measurements(settings.data or (), settings.measurement_error, lambda kilopascal: 1e3 * kilopascal)
         prepared = field.prepare(settings, 20e3, places, data=data)
-        scene = SimpleNamespace(points=SimpleNamespace(position=Vector(*places.T)))
-        return SimpleNamespace(study=study, scene=scene, fields={"cohesion": prepared})
+        uppermost = SimpleNamespace(field=prepared, points=places, mean=20e3)
+        return SimpleNamespace(study=study, fields={"cohesion": SimpleNamespace(parts=[uppermost])})
 
     monkeypatch.setattr(realisation, "prepare", prepare)
 

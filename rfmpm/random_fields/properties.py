@@ -1,0 +1,250 @@
+"""The random properties of a soil: their fields in all layers, on the points or a reference lattice, realised together.
+
+The vector `xi` of a realisation holds the parts of the properties in the order of the study; the part of a property
+those of its soils, from above all layers down; the part of a soil is what its method takes.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from math import pi, radians, tan
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rfmpm.random_fields import field
+from rfmpm.random_fields.common import reference, take
+from rfmpm.random_fields.cross_correlation import mix, mixing_matrix
+from rfmpm.random_fields.layers import settings_of_soils, soil_of_points
+from rfmpm.random_fields.measurements import Measurements, measurements
+from rfmpm.random_fields.trend import Trend
+
+LARGEST_ANGLE = 80.0 / 180.0 * pi  # [rad], as for an angle that is not random
+
+
+class Kind(NamedTuple):
+    """What is random of a property, and where a study says its mean."""
+
+    mean_key: str  # of a material, and of a layer by its unit
+    layer_key: str
+    field_mean: Callable[[float], float]  # mean of the field in SI units, from the study's number
+    value: Callable[[np.ndarray], np.ndarray]  # the property in SI units, from the field
+
+
+def _pascal(kilopascal: float) -> float:
+    return kilopascal * 1e3
+
+
+def _tangent(degrees: float) -> float:
+    return tan(radians(degrees))
+
+
+def _same(values: np.ndarray) -> np.ndarray:
+    return values
+
+
+def _angle(tangent: np.ndarray) -> np.ndarray:
+    return np.minimum(np.arctan(tangent), LARGEST_ANGLE)
+
+
+# The tangent of the angle of friction is what varies: a stress ratio, for which coefficients of variation are reported.
+KINDS = {
+    "cohesion": Kind("cohesion_kpa", "mean_kpa", _pascal, _same),
+    "residual_cohesion": Kind("residual_cohesion_kpa", "mean_kpa", _pascal, _same),
+    "friction_angle": Kind("friction_angle_deg", "mean_deg", _tangent, _angle),
+}
+
+
+class Site(NamedTuple):
+    """Where fields are needed."""
+
+    points: np.ndarray  # material points, shape (n, 2) [m]
+    cell: float  # side of a cell [m]
+    square: float  # side of the square that a material point stands for [m]
+    crest: float  # height of the crest, from which depths are measured [m]
+    extent: tuple[float, float]  # length and height from the origin that squares of any cell size may touch [m]
+
+
+@dataclass(frozen=True)
+class Part:
+    """The field of one soil: its settings, the mean at the crest [unit of the field] and the points that carry it."""
+
+    settings: Any
+    mean: float
+    points: np.ndarray  # (m, 2) [m]
+    members: np.ndarray | slice  # their places among all points that carry the property
+    field: field.PreparedField
+
+
+@dataclass(frozen=True)
+class Property:
+    """A random property, ready to be realised.
+
+    Attributes:
+        name: one of KINDS.
+        parts: the fields of its soils that have points.
+        count: number of points that carry it.
+        taken: which of them each material point takes, shape (n, k); None where the material points carry it.
+    """
+
+    name: str
+    parts: tuple[Part, ...]
+    count: int
+    taken: np.ndarray | None
+
+    @property
+    def n_variables(self) -> int:
+        """Length of its part of `xi`."""
+        return sum(part.field.n_variables for part in self.parts)
+
+
+@dataclass(frozen=True)
+class Properties:
+    """All random properties of a study, by name, and what mixes their standard-normal fields; None: independent."""
+
+    entries: dict[str, Property]
+    mixing: np.ndarray | None
+
+    @property
+    def n_variables(self) -> int:
+        """Length of the vector `xi`."""
+        return sum(entry.n_variables for entry in self.entries.values())
+
+
+def prepare(study: Any, site: Site, store: Path | None = None) -> Properties:
+    """Prepare the random properties of a study.
+
+    Args:
+        study: `random_field`, `random_field_correlation` and `material` are read.
+        site: where they are needed.
+        store: as for `field.prepare`.
+
+    Returns:
+        the prepared properties; those with one correlation on the same points share what a method prepared.
+
+    Raises:
+        ValueError: as for `field.prepare`; a trend that reaches zero; properties that cannot be correlated.
+        OSError: the store cannot be written.
+    """
+    entries: dict[str, Property] = {}
+    for name, settings in study.random_field.items():
+        material = next(material for material in study.material if material.name == settings.material)
+        before = [part for entry in entries.values() for part in entry.parts]
+        entries[name] = _prepare_property(name, settings, material, site, store, before)
+    if not study.random_field_correlation:
+        return Properties(entries, None)
+    _check_that_the_first_has_the_data(study)
+    _check_that_they_share(entries, study.random_field_correlation)
+    return Properties(entries, mixing_matrix(list(entries), study.random_field_correlation))
+
+
+def realise(properties: Properties, xi: np.ndarray) -> dict[str, np.ndarray]:
+    """One realisation of all properties.
+
+    Args:
+        properties: the prepared properties.
+        xi: standard-normal vector, shape (n_variables,) [-].
+
+    Returns:
+        values at the material points by name, shape (n,) each: cohesions [Pa], angles [rad].
+
+    Raises:
+        ValueError: `xi` has another shape.
+    """
+    xi = np.asarray(xi, dtype=float)
+    if xi.shape != (properties.n_variables,):
+        raise ValueError(f"xi of shape {xi.shape}: must be ({properties.n_variables},), as this study's fields take")
+    entries = properties.entries.values()
+    fields = [_standard_normal(entry, part) for entry, part in zip(entries, _split(xi, entries), strict=True)]
+    if properties.mixing is not None:
+        fields = mix(properties.mixing, fields)
+    return {entry.name: _values(entry, z) for entry, z in zip(entries, fields, strict=True)}
+
+
+def means(properties: Properties, count: int) -> dict[str, np.ndarray]:
+    """Mean of each property in its uppermost soil at the crest, shape (count,) each: what a kernel compiles for."""
+    return {
+        name: np.full(count, KINDS[name].value(np.array(entry.parts[0].mean)))
+        for name, entry in properties.entries.items()
+    }
+
+
+def _prepare_property(
+    name: str, settings: Any, material: Any, site: Site, store: Path | None, before: list[Part]
+) -> Property:
+    points, taken = site.points, None
+    if settings.reference_cell_m is not None:
+        ratio = round(site.cell / settings.reference_cell_m)
+        points, taken = reference(site.points, site.square, ratio, site.extent, settings.reference_value or "mean")
+    soil = soil_of_points(settings.layer or (), points)
+    kind, parts = KINDS[name], []
+    data = measurements(settings.data or (), settings.measurement_error, kind.field_mean)
+    soil_of_data = soil_of_points(settings.layer or (), data.places)
+    own_mean = getattr(material, kind.mean_key)
+    numbers = [own_mean, *(getattr(layer, kind.layer_key) or own_mean for layer in settings.layer or ())]
+    for number, (own, mean) in enumerate(zip(settings_of_soils(settings), numbers, strict=True)):
+        members = slice(None) if not settings.layer else np.flatnonzero(soil == number)
+        places, value = points[members], kind.field_mean(mean)
+        if len(places) == 0:
+            continue
+        shared = [part.field for part in before if np.array_equal(part.points, places)]
+        known = Measurements(*(column[soil_of_data == number] for column in data))
+        prepared = field.prepare(own, value, places, store, _trend(own, site.crest), shared, known)
+        parts.append(Part(own, value, places, members, prepared))
+    return Property(name, tuple(parts), len(points), taken)
+
+
+def _trend(settings: Any, crest: float) -> Trend | None:
+    mean_gain, deviation_gain = settings.trend_kpa_per_m, settings.standard_deviation_trend_kpa_per_m
+    if mean_gain is None and deviation_gain is None:
+        return None
+    return Trend(crest, (mean_gain or 0.0) * 1e3, None if deviation_gain is None else deviation_gain * 1e3)
+
+
+def _check_that_they_share(entries: Mapping[str, Property], correlations: Any) -> None:
+    for entry in correlations:
+        first, second = (entries[name] for name in entry.between)
+        same = len(first.parts) == len(second.parts) and all(
+            a.field.correlation == b.field.correlation and np.array_equal(a.points, b.points)
+            for a, b in zip(first.parts, second.parts, strict=True)
+        )
+        if not same:
+            raise ValueError(
+                f"{' and '.join(entry.between)} are correlated, but not with one correlation in space on the same "
+                "points: give both fields the same correlation, scales of fluctuation, rotation and layers"
+            )
+
+
+def _check_that_the_first_has_the_data(study: Any) -> None:
+    # The later of two correlated fields is a share of the earlier one plus what is independent of it: data of the
+    # earlier one bear on both as they should, data of the later one would have to change the earlier one too.
+    order = list(study.random_field)
+    for entry in study.random_field_correlation:
+        later = max(entry.between, key=order.index)
+        if study.random_field[later].data:
+            raise ValueError(
+                f"random_field.{later}: of correlated properties only the first in the study may have data: write "
+                f"[random_field.{later}] before the others, or leave out its data"
+            )
+
+
+def _split(xi: np.ndarray, entries: Any) -> Iterator[np.ndarray]:
+    start = 0
+    for entry in entries:
+        yield xi[start : start + entry.n_variables]
+        start += entry.n_variables
+
+
+def _standard_normal(entry: Property, xi: np.ndarray) -> np.ndarray:
+    z = np.empty(entry.count)
+    fields = [part.field for part in entry.parts]
+    for part, own in zip(entry.parts, _split(xi, fields), strict=True):
+        z[part.members] = field.realise_standard_normal(part.field, own)
+    return z
+
+
+def _values(entry: Property, z: np.ndarray) -> np.ndarray:
+    values = np.empty(entry.count)
+    for part in entry.parts:
+        values[part.members] = part.field.marginal.transform(z[part.members])
+    return KINDS[entry.name].value(values if entry.taken is None else take(values, entry.taken))

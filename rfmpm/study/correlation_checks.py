@@ -1,0 +1,91 @@
+"""What correlated random fields of a study must satisfy: they vary alike in space, and their coefficients agree."""
+
+from collections.abc import Callable, Iterator
+from math import sqrt
+from typing import Any
+
+from rfmpm.study.errors import Problem
+from rfmpm.study.field_models import FieldLayer
+from rfmpm.study.kinds import Table
+from rfmpm.study.known import Known, path_of, problem
+from rfmpm.study.models import RandomField
+
+# Keys that say what the values are; all others say how they vary in space, and are those of both fields.
+OF_THE_VALUES = {
+    *("distribution", "coefficient_of_variation"),
+    *("trend_kpa_per_m", "standard_deviation_trend_kpa_per_m"),
+}
+OF_THE_VALUES_IN_A_LAYER = {"mean_kpa", "mean_deg", "coefficient_of_variation"}
+SMALLEST_PIVOT = 1e-12  # of the matrix of the coefficients; below it a field would be no more than the others
+
+
+def _pairs(known: Known) -> Iterator[tuple[str, str, str]]:
+    """Path of each correlation and its two fields."""
+    for number in range(len(known["random_field_correlation"] or ())):
+        path = f"random_field_correlation.{number}"
+        yield path, known[f"{path}.between.0"], known[f"{path}.between.1"]
+
+
+def _correlated_fields_exist_once(known: Known) -> Iterator[Problem]:
+    seen = set()
+    for path, first, second in _pairs(known):
+        for place, name in enumerate((first, second)):
+            if name not in known["random_field"]:
+                text = f"is not random in this study: add the table random_field.{name}, or leave this one out"
+                yield problem(known, f"{path}.between.{place}", text)
+        if first == second or frozenset((first, second)) in seen:
+            yield problem(known, f"{path}.between", "must be two different fields, and each pair once")
+        seen.add(frozenset((first, second)))
+
+
+def _correlated_fields_vary_alike(known: Known) -> Iterator[Problem]:
+    for _, first, second in _pairs(known):
+        if first == second or not {first, second} <= known["random_field"].keys():
+            continue
+        own, other = f"random_field.{first}", f"random_field.{second}"
+        for key in RandomField.model_fields.keys() - OF_THE_VALUES - {"layer"}:
+            if (asked := known[f"{own}.{key}"]) != known[f"{other}.{key}"]:
+                text = f"must be that of {own}, with which it is correlated: {'left out' if asked is None else asked}"
+                yield _unequal(known, f"{other}.{key}", text)
+        if _borders(known, own) != _borders(known, other):
+            text = f"must have the borders, scales and rotations of {own}, with which it is correlated"
+            yield _unequal(known, f"{other}.layer", text)
+
+
+def _unequal(known: Known, key: str, text: str) -> Problem:
+    return Problem(path_of(key), f"missing; {text}") if known[key] is None else problem(known, key, text)
+
+
+def _borders(known: Known, field: str) -> list[dict[str, Any]]:
+    count = len(known[f"{field}.layer"] or ())
+    return [_values(known, f"{field}.layer.{number}", FieldLayer, OF_THE_VALUES_IN_A_LAYER) for number in range(count)]
+
+
+def _values(known: Known, path: str, model: type[Table], without: set[str]) -> dict[str, Any]:
+    return {key: known[f"{path}.{key}"] for key in model.model_fields if key not in without}
+
+
+def _coefficients_allow_each_other(known: Known) -> Iterator[Problem]:
+    """The matrix of the coefficients must be positive definite: it has a Cholesky factor."""
+    names = list(known["random_field"])
+    matrix = [[float(i == j) for j in names] for i in names]
+    for path, *pair in _pairs(known):
+        if set(pair) <= set(names) and pair[0] != pair[1]:
+            i, j = (names.index(name) for name in pair)
+            matrix[i][j] = matrix[j][i] = known[f"{path}.coefficient"]
+    lower = [[0.0] * len(names) for _ in names]
+    for i in range(len(names)):
+        for j in range(i + 1):
+            left = matrix[i][j] - sum(lower[i][k] * lower[j][k] for k in range(j))
+            if i == j and left <= SMALLEST_PIVOT:
+                text = "has coefficients that exclude each other: bring one of them closer to 0"
+                yield Problem(("random_field_correlation",), text)
+                return
+            lower[i][j] = sqrt(left) if i == j else left / lower[j][j]
+
+
+CORRELATION_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
+    _correlated_fields_exist_once,
+    _correlated_fields_vary_alike,
+    _coefficients_allow_each_other,
+]

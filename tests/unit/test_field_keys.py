@@ -1,0 +1,163 @@
+"""Random fields in a study file: what is refused, in which words, and all at once."""
+
+from pathlib import Path
+
+import pytest
+
+import rfmpm
+from rfmpm.study import StudyError
+
+CONFIGS = Path(__file__).parents[2] / "configs"
+COHESION, FRICTION = "random_field.cohesion", "random_field.friction_angle"
+PAIR = "random_field_correlation.0"
+INF, NAN = float("inf"), float("nan")
+
+
+@pytest.fixture
+def drained():
+    return rfmpm.load_study(CONFIGS / "drained_cross_correlated.toml")
+
+
+@pytest.fixture
+def undrained():
+    return rfmpm.load_study(CONFIGS / "short_slope_random.toml")
+
+
+def problems_of(study, changes):
+    with pytest.raises(StudyError) as refusal:
+        study.with_changes(changes)
+    return refusal.value.problems
+
+
+def layer(**keys):
+    return {f"{COHESION}.layer": [{"top_m": 2.0} | keys]}
+
+
+FIELD = {
+    "material": "clay",
+    "distribution": "lognormal",
+    "coefficient_of_variation": 0.2,
+    "correlation": "markov_separable",
+    "scale_of_fluctuation_h_m": 6.0,
+    "scale_of_fluctuation_v_m": 1.0,
+}
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({f"{COHESION}.trend_kpa_per_m": INF}, "must be a finite number"),
+        ({f"{COHESION}.trend_kpa_per_m": -5.0}, "makes the mean -5 kPa at a depth of 5 m: must be above -4"),
+        ({f"{COHESION}.standard_deviation_trend_kpa_per_m": NAN}, "must be a finite number"),
+        ({f"{COHESION}.standard_deviation_trend_kpa_per_m": -1.0}, "must be greater than -1 and at most 7"),
+        ({f"{COHESION}.standard_deviation_trend_kpa_per_m": 8.0}, "makes the standard deviation 45 kPa at a depth"),
+        ({f"{COHESION}.reference_cell_m": 0.2}, "must be discretisation.cell_m = 0.25 over a whole number, such as"),
+        ({f"{COHESION}.reference_cell_m": 0.5}, "must be discretisation.cell_m = 0.25 over a whole number"),
+        ({f"{COHESION}.reference_cell_m": 0.0}, "must be greater than 0"),
+        ({f"{COHESION}.reference_value": "mean"}, "needs a reference_cell_m"),
+        (
+            {f"{COHESION}.reference_cell_m": 0.25, f"{COHESION}.reference_value": "sum"},
+            'must be one of "mean", "point"',
+        ),
+        ({f"{COHESION}.reference_cell_m": 0.05}, "lattice points need a dense factor"),
+        (layer(top_m=5.0), "must be greater than 0 and less than 5, to cross the body"),
+        (layer(top_m=-1.0), "to cross the body"),
+        (layer(top_m=INF), "must be a finite number"),
+        (layer(dip_deg=80.0), "must be greater than -80 and less than 80"),
+        (layer(mean_kpa=0.0), "must be greater than 0"),
+        (layer(mean_deg=20.0), "must be left out: the mean of cohesion is mean_kpa"),
+        (layer(coefficient_of_variation=2.1), "must be greater than 0 and at most 2"),
+        (layer(scale_of_fluctuation_h_m=0.0), "must be greater than 0"),
+        (layer(scale_of_fluctuation_v_m=-1.0), "must be greater than 0"),
+        (layer(rotation_deg=181.0), "must be at least -180 and at most 180"),
+        (layer(thickness_m=2.0), "unknown key"),
+        ({FRICTION: FIELD}, 'is a material with law = "von_mises", which has no friction_angle'),
+        ({"random_field.youngs_modulus": FIELD}, "unknown key"),
+        (
+            {"random_field.residual_cohesion": FIELD, "material.0.softening_modulus_kpa": 0.0},
+            "must be given and greater",
+        ),
+        ({"random_field_correlation": [{"between": ["cohesion", "friction_angle"], "coefficient": 0.5}]}, "not random"),
+    ],
+)
+def test_one_wrong_key_of_a_field_is_one_problem(undrained, changes, sentence):
+    (problem,) = problems_of(undrained, changes)
+    assert sentence in problem
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({f"{PAIR}.coefficient": 1.0}, "must be greater than -1 and less than 1"),
+        ({f"{PAIR}.coefficient": NAN}, "must be a finite number"),
+        ({f"{PAIR}.between": ["cohesion", "cohesion"]}, "must be two different fields, and each pair once"),
+        ({f"{PAIR}.between": "cohesion"}, 'must be a list of 2, each one of "cohesion", "residual_cohesion"'),
+        ({f"{PAIR}.between": ["cohesion"] * 3}, "must be a list of 2"),
+        ({f"{PAIR}.between": ["cohesion", "friction"]}, 'must be one of "cohesion"'),
+        ({f"{PAIR}.between": ["residual_cohesion", "cohesion"]}, "add the table random_field.residual_cohesion"),
+        ({f"{FRICTION}.scale_of_fluctuation_v_m": 2.0}, "must be that of random_field.cohesion, with which it is"),
+        ({f"{FRICTION}.correlation": "gaussian"}, "must be that of random_field.cohesion, with which it is correlated"),
+        ({f"{COHESION}.reference_cell_m": 0.25}, "missing; must be that of random_field.cohesion"),
+        ({f"{COHESION}.layer": [{"top_m": 2.0}]}, "missing; must have the borders, scales and rotations of"),
+        ({f"{FRICTION}.coefficient_of_variation": 0.51}, "must be at most 0.5: it is that of tan(friction angle)"),
+        ({f"{FRICTION}.trend_kpa_per_m": 1.0}, "must be left out: a friction angle has no trend in kPa"),
+    ],
+)
+def test_one_wrong_key_of_correlated_fields_is_one_problem(drained, changes, sentence):
+    (problem,) = problems_of(drained, changes)
+    assert sentence in problem
+
+
+def test_a_property_without_a_mean_cannot_vary(drained):
+    problems = problems_of(drained, {"material.0.cohesion_kpa": 0.0, "material.0.residual_cohesion_kpa": 0.0})
+    assert "material.0.cohesion_kpa = 0.0: must be greater than 0, the mean of its random field" in problems
+
+
+def test_coefficients_that_exclude_each_other(drained):
+    third = drained.model_dump(exclude_none=True)["random_field"]["friction_angle"]
+    pairs = [("cohesion", "friction_angle", 0.9), ("cohesion", "residual_cohesion", 0.9)]
+    both = [{"between": [first, second], "coefficient": value} for first, second, value in pairs]
+    last = {"between": ["friction_angle", "residual_cohesion"]}
+    changes = {"random_field.residual_cohesion": third}
+    # The third coefficient of two of 0.9 lies within 0.81 +- 0.19.
+    (problem,) = problems_of(drained, changes | {"random_field_correlation": [*both, last | {"coefficient": 0.61}]})
+    assert (
+        problem == "random_field_correlation: has coefficients that exclude each other: bring one of them closer to 0"
+    )
+    drained.with_changes(changes | {"random_field_correlation": [*both, last | {"coefficient": 0.63}]})
+
+
+def test_the_same_pair_twice_is_refused(drained):
+    again = {"between": ["friction_angle", "cohesion"], "coefficient": 0.1}
+    first = drained.model_dump()["random_field_correlation"][0]
+    (problem,) = problems_of(drained, {"random_field_correlation": [first, again]})
+    assert problem.startswith("random_field_correlation.1.between")
+
+
+def test_everything_wrong_is_said_at_once(drained):
+    changes = {
+        f"{FRICTION}.coefficient_of_variation": 0.6,
+        f"{FRICTION}.scale_of_fluctuation_h_m": 1.0,
+        f"{COHESION}.trend_kpa_per_m": -2.0,
+        f"{COHESION}.reference_value": "mean",
+        f"{PAIR}.coefficient": -2.0,
+    }
+    assert len(problems_of(drained, changes)) == 6  # reference_value is wrong in itself and missing in the other field
+
+
+def test_studies_without_these_keys_say_nothing_of_them(undrained):
+    text = undrained.to_toml()
+    assert not [word for word in ("trend", "layer", "reference_cell_m = 0", "random_field_correlation") if word in text]
+
+
+def test_a_study_with_all_of_them_survives_its_text(drained):
+    changes = {
+        f"{COHESION}.standard_deviation_trend_kpa_per_m": 0.0,
+        f"{COHESION}.layer": [{"top_m": 3.0, "dip_deg": 5.0, "mean_kpa": 9.0}],
+        f"{FRICTION}.layer": [{"top_m": 3.0, "dip_deg": 5.0, "mean_deg": 31.0}],
+        f"{COHESION}.reference_cell_m": 0.25,
+        f"{FRICTION}.reference_cell_m": 0.25,
+    }
+    study = drained.with_changes(changes)
+    assert rfmpm.load_study(study.to_toml()) == study
+    assert study.physics_hash != drained.physics_hash
