@@ -130,7 +130,10 @@ def prepare(study: Any, site: Site, store: Path | None = None) -> Properties:
     for name, settings in study.random_field.items():
         material = next(material for material in study.material if material.name == settings.material)
         before = [part for entry in entries.values() for part in entry.parts]
-        entries[name] = _prepare_property(name, settings, material, site, store, before)
+        try:
+            entries[name] = _prepare_property(name, settings, material, site, store, before)
+        except ValueError as error:
+            raise ValueError(f"random_field.{name}: {error}") from None
     if not study.random_field_correlation:
         return Properties(entries, None)
     _check_that_the_first_has_the_data(study)
