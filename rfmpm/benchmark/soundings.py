@@ -6,21 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rfmpm.random_fields.estimation import (
-    NUGGET,
-    Interval,
-    estimate,
-    likelihood,
-    profile_interval,
-    vertical_correlation,
-)
+from rfmpm.random_fields.estimation import NUGGET, Interval, estimate, profile_interval, vertical_correlation
 from rfmpm.random_fields.sounding import Sounding
 from rfmpm.random_fields.variance_function import fit_variance_function
 
 THETA, SPREAD, MEDIAN = 0.5, 0.25, 20.0  # m, coefficient of variation, kPa
 RATIOS = (5, 10, 20, 50)  # length over theta
 PER_THETA = 5  # values
-SOUNDINGS = 300
+SOUNDINGS = 200
 CASES = (("markov_separable", "constant"), ("markov_separable", "linear"), ("gaussian", "constant"))
 
 
@@ -72,10 +65,11 @@ def one(seed: int, ratio: int, correlation: str, trend: str) -> Found:
     lower = np.linalg.cholesky(matrix + NUGGET * np.eye(len(depth)))
     z = lower @ np.random.default_rng([seed, ratio]).standard_normal(len(depth))
     sounding = Sounding(depth, MEDIAN * np.exp(np.sqrt(np.log1p(SPREAD**2)) * z))
-    profile = likelihood(sounding, correlation, trend)
     best = estimate(sounding, correlation, trend)
     windows = fit_variance_function(sounding, correlation, trend).theta
-    return Found(best.theta, profile_interval(profile.theta, profile.plain), windows, best.coefficient_of_variation)
+    return Found(
+        best.theta, profile_interval(best.profile.theta, best.profile.plain), windows, best.coefficient_of_variation
+    )
 
 
 def _rows(correlation: str, trend: str, ratio: int, found: list[Found]) -> list[str]:

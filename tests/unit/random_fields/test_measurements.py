@@ -12,14 +12,14 @@ from rfmpm.random_fields.measurements import (
     to_standard_normal,
 )
 
-every_marginal = pytest.mark.parametrize("distribution", MARGINALS.values(), ids=MARGINALS)
+BY_TWO_MOMENTS = [name for name in ("lognormal", "normal_truncated", "gamma", "weibull") if name in MARGINALS]
 PLACES = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]])
 
 
-@every_marginal
+@pytest.mark.parametrize("name", BY_TWO_MOMENTS)
 @pytest.mark.parametrize("spread", [0.01, 0.3, 0.95])
-def test_the_inverse_gives_the_value_back(distribution, spread):
-    marginal = distribution.from_moments(20e3, spread)
+def test_the_inverse_gives_the_value_back(name, spread):
+    marginal = MARGINALS[name].from_moments(20e3, spread)
     z = np.linspace(-6.0, 6.0, 49)
     np.testing.assert_allclose(to_standard_normal(marginal, marginal.transform(z)), z, rtol=0, atol=1e-9)
 
