@@ -1,43 +1,53 @@
 """A random field of a positive strength at a set of points: prepared once, realised for every vector `xi`.
 
-The scales of fluctuation describe the standard-normal field from which the marginal distribution is made: for a
-lognormal strength, its logarithm. A correlation rho measured on a lognormal strength itself, of coefficient of
-variation V, is ln(1 + rho V^2) / ln(1 + V^2) in that space (Fenton and Griffiths 2008), which is larger by less than
-one hundredth at V = 0.25.
+What the settings mean for the distribution and the correlation of the values is composed in `law`.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from math import radians
+from math import sqrt
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
-from rfmpm.random_fields.correlation import CORRELATIONS, Anisotropy
-from rfmpm.random_fields.marginals import MARGINALS, Marginal
+from rfmpm.random_fields.correlation.protocol import Correlation
+from rfmpm.random_fields.law import Box, choose, law_of
+from rfmpm.random_fields.marginals import Marginal
 from rfmpm.random_fields.methods import METHODS
 from rfmpm.random_fields.store import find_or_prepare
-
-Entry = TypeVar("Entry")
 
 
 @dataclass(frozen=True)
 class PreparedField:
-    """A field ready to be realised: its correlation, its marginal distribution, and what its method prepared."""
+    """A field ready to be realised.
 
-    correlation: Anisotropy
+    Attributes:
+        correlation: of the standard-normal field, its nugget included.
+        marginal: distribution of the values.
+        method: name in `METHODS`.
+        record: what the method prepared for the correlated part of the standard-normal field.
+        nugget: share of the variance of the standard-normal field that differs from point to point [-].
+        count: number of points.
+        variance_factor: variance of the values over that at a point in the soil [-]; 1 unless they are averages.
+    """
+
+    correlation: Correlation
     marginal: Marginal
     method: str
     record: Any
+    nugget: float = 0.0
+    count: int = 0
+    variance_factor: float = 1.0
 
     @property
     def n_variables(self) -> int:
-        """Length of the vector `xi`."""
-        return METHODS[self.method].n_variables(self.record)
+        """Length of the vector `xi`: what the method takes, then one for each point where there is a nugget."""
+        return METHODS[self.method].n_variables(self.record) + (self.count if self.nugget else 0)
 
 
-def prepare(settings: Any, mean: float, points: np.ndarray, store: Path | None = None) -> PreparedField:
+def prepare(
+    settings: Any, mean: float, points: np.ndarray, store: Path | None = None, box: Box | None = None
+) -> PreparedField:
     """Prepare the field of one strength parameter.
 
     Args:
@@ -45,32 +55,28 @@ def prepare(settings: Any, mean: float, points: np.ndarray, store: Path | None =
         mean: mean of the field [Pa].
         points: positions, shape (n, 2) [m].
         store: folder in which what the method prepares is kept and found again; None keeps it in memory only.
+        box: width and height of the volume of each point [m]; needed where `averaging` is volume.
 
     Returns:
         the prepared field.
 
     Raises:
-        ValueError: an unknown name, moments or scales out of range, points that are not finite positions.
+        ValueError: as for `law_of`; points that are not finite positions; a correlation that is none on them.
         OSError: the store cannot be written.
     """
     points = np.ascontiguousarray(points, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 2 or len(points) == 0 or not np.all(np.isfinite(points)):
         raise ValueError(f"points of shape {points.shape}: must be finite positions, shape (n, 2), n > 0")
-    kernel = _choose(CORRELATIONS, settings.correlation, "correlation")
-    method = _choose(METHODS, settings.method, "method")
-    marginal = _choose(MARGINALS, settings.distribution, "distribution").from_moments(
-        mean, settings.coefficient_of_variation
-    )
-    correlation = kernel(
-        theta_h=settings.scale_of_fluctuation_h_m,
-        theta_v=settings.scale_of_fluctuation_v_m,
-        rotation=radians(settings.rotation_deg),
-    )
+    method = choose(METHODS, settings.method, "method")
+    law = law_of(settings, box)
+    marginal = law.marginal(mean, settings.coefficient_of_variation)
     if store is None:
-        record = method.prepare(correlation, points)
+        record = method.prepare(law.correlated, points)
     else:
-        record = find_or_prepare(settings.method, correlation, points, store)
-    return PreparedField(correlation, marginal, settings.method, record)
+        record = find_or_prepare(settings.method, law.correlated, points, store)
+    return PreparedField(
+        law.correlation, marginal, settings.method, record, law.nugget, len(points), law.variance_factor
+    )
 
 
 def realise(prepared: PreparedField, xi: np.ndarray) -> np.ndarray:
@@ -94,10 +100,9 @@ def realise_standard_normal(prepared: PreparedField, xi: np.ndarray) -> np.ndarr
     xi = np.ascontiguousarray(xi, dtype=np.float64)
     if xi.shape != (prepared.n_variables,):
         raise ValueError(f"xi of shape {xi.shape}: must be ({prepared.n_variables},)")
-    return METHODS[prepared.method].transform(prepared.record, xi)
-
-
-def _choose(table: Mapping[str, Entry], name: str, key: str) -> Entry:
-    if name not in table:
-        raise ValueError(f"{key} = {name!r}: must be one of {', '.join(table)}")
-    return table[name]
+    method = METHODS[prepared.method]
+    n_method = method.n_variables(prepared.record)
+    z = method.transform(prepared.record, xi[:n_method])
+    if not prepared.nugget:
+        return z
+    return sqrt(1.0 - prepared.nugget) * z + sqrt(prepared.nugget) * xi[n_method:]

@@ -1,12 +1,12 @@
 """Sample statistics of a field over realisations, beside the asked ones."""
 
 from collections.abc import Iterable, Iterator
-from math import cos, sin
+from math import cos, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from rfmpm.random_fields.correlation import Anisotropy
+from rfmpm.random_fields.correlation.protocol import Correlation
 from rfmpm.random_fields.field import PreparedField, realise_standard_normal
 
 MOST_PAIRS = 400
@@ -75,7 +75,7 @@ def statistics(
         Statistic(
             "standard_deviation",
             0.0,
-            mean * settings.coefficient_of_variation,
+            mean * settings.coefficient_of_variation * sqrt(prepared.variance_factor),
             float(deviation),
             float(error[1] / (2.0 * deviation)),
         ),
@@ -86,7 +86,7 @@ def statistics(
     ]
 
 
-def point_pairs(correlation: Anisotropy, points: np.ndarray, lags: int = 8) -> Iterator[PointPairs]:
+def point_pairs(correlation: Correlation, points: np.ndarray, lags: int = 8) -> Iterator[PointPairs]:
     """Pairs of points about k theta / 4 apart, k = 1 to `lags`, along the h axis and across it.
 
     The partner of a point is the one nearest to the place a lag away, if that is within three quarters of a point
