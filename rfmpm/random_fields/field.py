@@ -1,50 +1,63 @@
 """A random field of a positive strength at a set of points: prepared once, realised for every vector `xi`.
 
-The scales of fluctuation describe the standard-normal field from which the marginal distribution is made: for a
-lognormal strength, its logarithm. A correlation rho measured on a lognormal strength itself, of coefficient of
-variation V, is ln(1 + rho V^2) / ln(1 + V^2) in that space (Fenton and Griffiths 2008), which is larger by less than
-one hundredth at V = 0.25.
+What the settings mean for the distribution and the correlation of the values is composed in `law`.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
-from math import radians
+from math import sqrt
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from rfmpm.random_fields.conditioning import Conditioning, condition, update
-from rfmpm.random_fields.correlation import CORRELATIONS, Anisotropy
-from rfmpm.random_fields.marginals import MARGINALS, Marginal
+from rfmpm.random_fields.correlation.protocol import Correlation
+from rfmpm.random_fields.law import Box, Law, choose, law_of
+from rfmpm.random_fields.marginals import Marginal
 from rfmpm.random_fields.measurements import Measurements, distinct, standard_normal_data
-from rfmpm.random_fields.methods import AUTO, METHODS, choose
+from rfmpm.random_fields.methods import AUTO, METHODS
+from rfmpm.random_fields.methods import choose as fastest_method
 from rfmpm.random_fields.store import find_or_prepare
 from rfmpm.random_fields.trend import Trend
-
-Entry = TypeVar("Entry")
 
 
 @dataclass(frozen=True)
 class PreparedField:
-    """A field ready to be realised: its correlation, its marginal distribution, and what its method prepared.
+    """A field ready to be realised.
 
-    `method` is a name in `METHODS`: where a study says auto, the method that was chosen.
-    `data` are the measured values and `conditioning` is what makes its realisations agree with them; None without any.
+    Attributes:
+        correlation: of the standard-normal field, its nugget included.
+        marginal: distribution of the values.
+        method: name in `METHODS`; where a study says auto, the method that was chosen.
+        record: what the method prepared for the correlated part of the standard-normal field.
+        nugget: share of the variance of the standard-normal field that differs from point to point [-].
+        count: number of points.
+        variance_factor: variance of the values over that at a point in the soil [-]; 1 unless they are averages.
+        data: the measured values; None without any.
+        conditioning: what makes realisations agree with them; None without any.
     """
 
-    correlation: Anisotropy
+    correlation: Correlation
     marginal: Marginal
     method: str
     record: Any
+    nugget: float
+    count: int
+    variance_factor: float
     data: Measurements | None = None
     conditioning: Conditioning | None = None
 
     @property
+    def parts_of_xi(self) -> tuple[int, int]:
+        """Where in `xi` the variables of the method end, and those of the nugget (one per point); data's follow."""
+        n_method = METHODS[self.method].n_variables(self.record)
+        return n_method, n_method + (self.count if self.nugget else 0)
+
+    @property
     def n_variables(self) -> int:
         """Length of the vector `xi`."""
-        n_method = METHODS[self.method].n_variables(self.record)
-        return n_method + (self.conditioning.n_variables if self.conditioning else 0)
+        return self.parts_of_xi[1] + (self.conditioning.n_variables if self.conditioning else 0)
 
 
 def prepare(
@@ -52,9 +65,10 @@ def prepare(
     mean: float,
     points: np.ndarray,
     store: Path | None = None,
+    box: Box | None = None,
     trend: Trend | None = None,
-    shared: Iterable[PreparedField] = (),
     data: Measurements | None = None,
+    shared: Iterable[PreparedField] = (),
 ) -> PreparedField:
     """Prepare the field of one strength parameter.
 
@@ -63,45 +77,33 @@ def prepare(
         mean: mean of the field, at depth zero of a trend [Pa].
         points: positions, shape (n, 2) [m].
         store: folder in which what the method prepares is kept and found again; None keeps it in memory only.
+        box: width and height of the volume of each point [m]; needed where `averaging` is volume.
         trend: how mean and standard deviation change with depth; None: not at all.
-        shared: fields on the same points; what the method prepared for one of equal correlation serves this one too.
         data: measured values that every realisation agrees with; None, or none of them, for an unconditional field.
+        shared: fields on the same points; what the method prepared for one of equal correlation serves this one too.
 
     Returns:
         the prepared field.
 
     Raises:
-        ValueError: an unknown name, moments or scales out of range, points that are not finite positions, data that
-            contradict each other, the distribution or the correlation.
+        ValueError: as for `law_of`; points that are not finite positions; a correlation that is none on them; data
+            that contradict each other, the distribution or the correlation; settings that exclude each other.
         OSError: the store cannot be written.
     """
     points = np.ascontiguousarray(points, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 2 or len(points) == 0 or not np.all(np.isfinite(points)):
         raise ValueError(f"points of shape {points.shape}: must be finite positions, shape (n, 2), n > 0")
-    kernel = _choose(CORRELATIONS, settings.correlation, "correlation")
-    factory = _choose(MARGINALS, settings.distribution, "distribution").from_moments
-    moments = mean, settings.coefficient_of_variation
-
-    def marginal_at(places: np.ndarray) -> Marginal:
-        return factory(*moments) if trend is None else trend.marginal(factory, *moments, places)
-
-    marginal = marginal_at(points)
-    correlation = kernel(
-        theta_h=settings.scale_of_fluctuation_h_m,
-        theta_v=settings.scale_of_fluctuation_v_m,
-        rotation=radians(settings.rotation_deg),
-    )
-    name = choose(correlation, points) if settings.method == AUTO else settings.method
-    record = next((other.record for other in shared if (other.correlation, other.method) == (correlation, name)), None)
-    if record is None:
-        method = _choose(METHODS, name, "method")
-        kept = store is not None
-        record = find_or_prepare(name, correlation, points, store) if kept else method.prepare(correlation, points)
-    if data is None or len(data.values) == 0:
-        return PreparedField(correlation, marginal, name, record)
+    law = law_of(settings, box)
+    has_data = data is not None and len(data.values) > 0
+    _check_together(settings, trend, has_data)
+    marginal = _marginal(law, mean, settings, trend, points)
+    method, record = _record(law, settings, points, store, shared)
+    fixed = law.correlation, marginal, method, record, law.nugget, len(points), law.variance_factor
+    if not has_data:
+        return PreparedField(*fixed)
     data = distinct(data)
-    conditioning = condition(correlation, points, standard_normal_data(marginal_at(data.places), data))
-    return PreparedField(correlation, marginal, name, record, data, conditioning)
+    known = standard_normal_data(_marginal(law, mean, settings, trend, data.places), data)
+    return PreparedField(*fixed, data, condition(law.correlation, points, known))
 
 
 def realise(prepared: PreparedField, xi: np.ndarray) -> np.ndarray:
@@ -125,14 +127,39 @@ def realise_standard_normal(prepared: PreparedField, xi: np.ndarray) -> np.ndarr
     xi = np.ascontiguousarray(xi, dtype=np.float64)
     if xi.shape != (prepared.n_variables,):
         raise ValueError(f"xi of shape {xi.shape}: must be ({prepared.n_variables},)")
-    method = METHODS[prepared.method]
-    if prepared.conditioning is None:
-        return method.transform(prepared.record, xi)
-    n_method = method.n_variables(prepared.record)
-    return update(prepared.conditioning, method.transform(prepared.record, xi[:n_method]), xi[n_method:])
+    of_method, of_nugget = prepared.parts_of_xi
+    z = METHODS[prepared.method].transform(prepared.record, xi[:of_method])
+    if prepared.nugget:
+        z = sqrt(1.0 - prepared.nugget) * z + sqrt(prepared.nugget) * xi[of_method:of_nugget]
+    return z if prepared.conditioning is None else update(prepared.conditioning, z, xi[of_nugget:])
 
 
-def _choose(table: Mapping[str, Entry], name: str, key: str) -> Entry:
-    if name not in table:
-        raise ValueError(f"{key} = {name!r}: must be one of {', '.join(table)}")
-    return table[name]
+def _marginal(law: Law, mean: float, settings: Any, trend: Trend | None, places: np.ndarray) -> Marginal:
+    moments = mean, settings.coefficient_of_variation
+    return law.marginal(*moments) if trend is None else trend.marginal(law.marginal, *moments, places)
+
+
+def _record(
+    law: Law, settings: Any, points: np.ndarray, store: Path | None, shared: Iterable[PreparedField]
+) -> tuple[str, Any]:
+    """Name of the method and what it prepared, or what it prepared for a field of equal correlation."""
+    name = fastest_method(law.correlated, points) if settings.method == AUTO else settings.method
+    method = choose(METHODS, name, "method")
+    for other in shared:
+        if (other.correlation, other.method) == (law.correlation, name):
+            return name, other.record
+    if store is None:
+        return name, method.prepare(law.correlated, points)
+    return name, find_or_prepare(name, law.correlated, points, store)
+
+
+def _check_together(settings: Any, trend: Trend | None, has_data: bool) -> None:
+    is_averaged = settings.averaging == "volume"
+    if is_averaged and has_data:
+        raise ValueError("averaging = 'volume': cannot go with data, which are values at points; take 'point'")
+    is_physical = getattr(settings, "correlation_space", None) == "physical"
+    if trend is not None and trend.deviation_gain is not None and (is_averaged or is_physical):
+        raise ValueError(
+            "standard_deviation_trend_kpa_per_m: cannot go with averaging = 'volume' or correlation_space = 'physical', "
+            "for which the coefficient of variation must be the same at every depth; leave one of them out"
+        )

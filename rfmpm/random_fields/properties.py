@@ -175,10 +175,11 @@ def means(properties: Properties, count: int) -> dict[str, np.ndarray]:
 def _prepare_property(
     name: str, settings: Any, material: Any, site: Site, store: Path | None, before: list[Part]
 ) -> Property:
-    points, taken = site.points, None
+    points, taken, side = site.points, None, site.square
     if settings.reference_cell_m is not None:
         ratio = round(site.cell / settings.reference_cell_m)
         points, taken = reference(site.points, site.square, ratio, site.extent, settings.reference_value or "mean")
+        side /= ratio
     soil = soil_of_points(settings.layer or (), points)
     kind, parts = KINDS[name], []
     data = measurements(settings.data or (), settings.measurement_error, kind.field_mean)
@@ -192,7 +193,7 @@ def _prepare_property(
             continue
         shared = [part.field for part in before if np.array_equal(part.points, places)]
         known = Measurements(*(column[soil_of_data == number] for column in data))
-        prepared = field.prepare(own, value, places, store, _trend(own, site.crest), shared, known)
+        prepared = field.prepare(own, value, places, store, (side, side), _trend(own, site.crest), known, shared)
         parts.append(Part(own, value, places, members, prepared))
     return Property(name, tuple(parts), len(points), taken)
 

@@ -1,13 +1,13 @@
 """Sample statistics of a field over realisations, beside the asked ones."""
 
 from collections.abc import Iterable, Iterator
-from math import cos, sin
+from math import cos, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from rfmpm.random_fields.conditioning import conditional_covariance
-from rfmpm.random_fields.correlation import Anisotropy
+from rfmpm.random_fields.correlation.protocol import Correlation
 from rfmpm.random_fields.field import PreparedField, realise_standard_normal
 from rfmpm.random_fields.measurements import conditional_moments
 
@@ -64,7 +64,7 @@ def statistics(
     """
     points = np.asarray(points, dtype=float)
     pairs = list(point_pairs(prepared.correlation, points))
-    centre, means, deviation = 0.0, mean, mean * settings.coefficient_of_variation
+    centre, means, deviation = 0.0, mean, mean * settings.coefficient_of_variation * sqrt(prepared.variance_factor)
     if conditioning := prepared.conditioning:
         pairs = [_conditional(pair, prepared, points) for pair in pairs]
         centre = conditioning.mean
@@ -97,7 +97,7 @@ def _conditional(pair: PointPairs, prepared: PreparedField, points: np.ndarray) 
     return pair._replace(name=pair.name.replace("correlation", "covariance"), asked=float(np.mean(asked)))
 
 
-def point_pairs(correlation: Anisotropy, points: np.ndarray, lags: int = 8) -> Iterator[PointPairs]:
+def point_pairs(correlation: Correlation, points: np.ndarray, lags: int = 8) -> Iterator[PointPairs]:
     """Pairs of points about k theta / 4 apart, k = 1 to `lags`, along the h axis and across it.
 
     The partner of a point is the one nearest to the place a lag away, if that is within three quarters of a point

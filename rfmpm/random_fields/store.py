@@ -9,11 +9,11 @@ from uuid import uuid4
 
 import numpy as np
 
-from rfmpm.random_fields.correlation import Anisotropy
+from rfmpm.random_fields.correlation.protocol import Correlation
 from rfmpm.random_fields.methods import METHODS
 
 
-def find_or_prepare(method: str, correlation: Anisotropy, points: np.ndarray, folder: Path) -> Any:
+def find_or_prepare(method: str, correlation: Correlation, points: np.ndarray, folder: Path) -> Any:
     """Read the record of a method from the folder, or prepare it and keep it there.
 
     The arrays of the record are mapped from their files, so processes on one machine share the memory. A damaged or
@@ -45,7 +45,7 @@ def find_or_prepare(method: str, correlation: Anisotropy, points: np.ndarray, fo
     return _read(chosen.Record, files) or fresh
 
 
-def _fingerprint(method: str, correlation: Anisotropy, points: np.ndarray) -> str:
+def _fingerprint(method: str, correlation: Correlation, points: np.ndarray) -> str:
     # Everything the bits of a record depend on, but the processor: records are best shared within one kind of machine.
     versions = [version(package) for package in ("rfmpm", "numpy", "scipy")]
     described = repr((method, correlation, points.shape, points.dtype.str, versions))

@@ -18,8 +18,11 @@ FLOORS = {
     4: ("quantities", "estimators", "stability"),
     3.5: ("random_fields.properties",),
     3: ("mpm.scene", "mpm.solvers", "random_fields.field", "random_fields.statistics"),
-    2.5: ("mpm.geometry", "mpm.energy", "mpm.initial_stress", "random_fields.store", "random_fields.trend"),
-    2.2: ("mpm.transfer",),
+    2.5: (
+        *("mpm.geometry", "mpm.energy", "mpm.initial_stress"),
+        *("random_fields.store", "random_fields.trend", "random_fields.law"),
+    ),
+    2.2: ("mpm.transfer", "random_fields.averaging", "random_fields.gaussian_space"),
     2: (
         *("mpm.stages", "mpm.cells", "mpm.nonlocal_softening", "mpm.boundary", "mpm.contact", "mpm.laws", "mpm.shapes"),
         *("random_fields.methods", "random_fields.correlation", "random_fields.marginals"),

@@ -1,6 +1,6 @@
 """Bounded distribution by a hyperbolic tangent: lower + (upper - lower) / 2 (1 + tanh((m + s z) / (2 pi))), z normal.
 
-Fenton and Griffiths (2008), Risk Assessment in Geotechnical Engineering, section 1.10.10: for friction angles.
+Fenton and Griffiths (2008), Risk Assessment in Geotechnical Engineering, chapter 1: for friction angles.
 """
 
 from dataclasses import dataclass
