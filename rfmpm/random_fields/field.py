@@ -160,6 +160,6 @@ def _check_together(settings: Any, trend: Trend | None, has_data: bool) -> None:
     is_physical = getattr(settings, "correlation_space", None) == "physical"
     if trend is not None and trend.deviation_gain is not None and (is_averaged or is_physical):
         raise ValueError(
-            "standard_deviation_trend_kpa_per_m: cannot go with averaging = 'volume' or correlation_space = 'physical', "
-            "for which the coefficient of variation must be the same at every depth; leave one of them out"
+            "standard_deviation_trend_kpa_per_m: cannot go with averaging = 'volume' or correlation_space = "
+            "'physical', for which the coefficient of variation must be the same at every depth; leave one of them out"
         )
