@@ -95,6 +95,18 @@ def test_exact_data_on_points_are_honoured(settings, kernel, distribution, sprea
         np.testing.assert_allclose(realise(prepared, xi)[on], values, rtol=1e-9)
 
 
+def test_data_too_close_for_a_smooth_correlation_are_honoured_too():
+    # Their covariance is singular to rounding, so that the weights are those of data with a nugget.
+    correlation, points = CORRELATIONS["gaussian"](6.0, 6.0), lattice(10, 8, 0.1)
+    record = METHODS["cholesky"].prepare(correlation, points)
+    rng = np.random.default_rng(6)
+    on = np.arange(0, 80, 2)
+    values = METHODS["cholesky"].transform(record, rng.standard_normal(80))[on]
+    conditioning = condition(correlation, points, StandardNormalData(points[on], values, np.zeros(len(on))))
+    z = METHODS["cholesky"].transform(record, rng.standard_normal(80))
+    np.testing.assert_allclose(update(conditioning, z, np.zeros(0))[on], values, rtol=0, atol=1e-12)
+
+
 def test_an_exact_datum_between_points_is_approached_by_near_points():
     correlation = CORRELATIONS["gaussian"](6.0, 6.0)
     points = np.vstack([lattice(), [[3.1 + 1e-4, 2.2]]])
