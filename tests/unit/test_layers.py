@@ -24,7 +24,7 @@ FLOORS = {
         *("random_fields.methods", "random_fields.correlation", "random_fields.marginals"),
         "random_fields.conditioning",
     ),
-    1: ("mpm.state", "mpm.protocols", "study", "variables", "seeds"),
+    1: ("mpm.state", "mpm.protocols", "random_fields.lattice", "study", "variables", "seeds"),
     0: ("kernel_tools",),
 }
 FLOOR_OF = {name: floor for floor, names in FLOORS.items() for name in names}

@@ -23,7 +23,7 @@ FOLDS = (2.0, 3.0, 4.0, 6.0)  # torus over lattice
 MARGIN = 0.9  # share of the accuracy that the far side of the padding may leave
 WIDENINGS = (1.0, 1.25, 1.6, 2.2)  # of that padding, where it did not do
 FURTHEST_PAD = 64.0  # lattices
-MOST_NODES, MOST_NODES_RATIO, FEWEST_NODES = 2**26, 40, 2**20  # of the torus; times the lattice
+MOST_NODES, MOST_NODES_RATIO, FEWEST_NODES = 2**26, 40, 2**17  # of the torus; times the lattice
 ROUNDING = 1e-14  # of the largest eigenvalue: negative by less is zero
 NOTHING = 1e-12  # a correlation at the next but one image that can be left out
 
