@@ -66,3 +66,11 @@ def verification() -> Write:
     from rfmpm.benchmark.verification import write
 
     return write
+
+
+@command
+def fields() -> Write:
+    """Run time against covariance error of every field method, and of other packages if installed: fields.md."""
+    from rfmpm.benchmark.fields.document import run
+
+    return run
