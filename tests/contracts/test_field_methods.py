@@ -17,8 +17,8 @@ from rfmpm.random_fields.methods.nufft import Nufft
 every_method = pytest.mark.parametrize("method", METHODS)
 ROUNDING = 1e-10  # identity up to rounding and the largest nugget that a method may add
 DEFAULT = 5e-4  # what the circulant embedding asks of itself
-STATED = {"karhunen_loeve": 0.3, "local_average_subdivision": 0.1, "nufft": 0.02}  # theirs, on these points, at most
-MOST_VARIABLES = 6000  # of which the linear map is formed, for time's sake
+STATED = {"karhunen_loeve": 0.5, "local_average_subdivision": 0.1, "nufft": 0.02}  # theirs, on these points, at most
+MOST_VARIABLES = 3000  # of which the linear map is formed, for time's sake
 LINEAR = [name for name in METHODS if name != "local_average_subdivision"]  # its window is a step in two variables
 
 
@@ -150,7 +150,7 @@ def test_the_circulant_embedding_is_exact_where_it_is_asked_to_be(kernel):
 
 def test_a_longer_series_is_more_accurate():
     correlation, points = CORRELATIONS["markov_ellipsoidal"](1.0, 0.5), points_of("scattered")
-    short, long = (Nufft.prepare(correlation, points, most_terms=2**k).error for k in (14, 16))
+    short, long = (Nufft.prepare(correlation, points, most_terms=2**k).error for k in (16, 18))
     assert long < 0.6 * short  # the error is of first order in the spacing, which halves
 
 
@@ -166,8 +166,8 @@ def test_what_is_not_a_correlation_is_refused(method):
         def rho(self, lag_x, lag_y):
             return np.where(np.hypot(lag_x, lag_y) < 0.1, 1.0, -0.5)
 
-    if method in ("karhunen_loeve", "local_average_subdivision"):
-        # They keep what is positive of it, and state the error.
+    if method == "karhunen_loeve":
+        # It keeps what is positive of it, and states the error.
         record = METHODS[method].prepare(Wave(), points_of("part"))
         assert covariance_error(method, record) > 0.1
         return
