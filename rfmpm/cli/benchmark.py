@@ -74,3 +74,11 @@ def soundings() -> Write:
     from rfmpm.benchmark.soundings import run
 
     return run
+
+
+@command
+def fields() -> Write:
+    """Run time against covariance error of every field method, and of other packages if installed: fields.md."""
+    from rfmpm.benchmark.fields.document import run
+
+    return run

@@ -9,10 +9,10 @@ import pytest
 from rfmpm.random_fields.correlation import CORRELATIONS
 from rfmpm.random_fields.field import prepare, realise
 from rfmpm.random_fields.marginals import MARGINALS
-from rfmpm.random_fields.methods import METHODS
 from rfmpm.random_fields.statistics import statistics
 
 REALISATIONS = 2000
+EXACT = ("cholesky", "circulant", "auto")
 MEAN = 20e3
 
 
@@ -36,7 +36,7 @@ def settings(correlation: str, distribution: str, method: str) -> SimpleNamespac
     )
 
 
-@pytest.mark.parametrize(("correlation", "distribution", "method"), list(product(CORRELATIONS, MARGINALS, METHODS)))
+@pytest.mark.parametrize(("correlation", "distribution", "method"), list(product(CORRELATIONS, MARGINALS, EXACT)))
 def test_found_is_asked_within_four_standard_errors(correlation, distribution, method):
     points, asked = slope_points(), settings(correlation, distribution, method)
     prepared = prepare(asked, MEAN, points)

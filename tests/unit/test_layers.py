@@ -31,7 +31,7 @@ FLOORS = {
         *("random_fields.layers", "random_fields.common"),
         "random_fields.cross_correlation",
     ),
-    1: ("mpm.state", "mpm.protocols", "study", "variables", "seeds"),
+    1: ("mpm.state", "mpm.protocols", "random_fields.lattice", "study", "variables", "seeds"),
     0: ("kernel_tools", "columns"),
 }
 FLOOR_OF = {name: floor for floor, names in FLOORS.items() for name in names}

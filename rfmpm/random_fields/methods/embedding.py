@@ -23,7 +23,7 @@ FOLDS = (2.0, 3.0, 4.0, 6.0)  # torus over lattice
 MARGIN = 0.9  # share of the accuracy that the far side of the padding may leave
 WIDENINGS = (1.0, 1.25, 1.6, 2.2)  # of that padding, where it did not do
 FURTHEST_PAD = 64.0  # lattices
-MOST_NODES, MOST_NODES_RATIO, FEWEST_NODES = 2**26, 40, 2**20  # of the torus; times the lattice
+MOST_NODES, MOST_NODES_RATIO, FEWEST_NODES = 2**26, 40, 2**17  # of the torus; times the lattice
 ROUNDING = 1e-14  # of the largest eigenvalue: negative by less is zero
 NOTHING = 1e-12  # a correlation at the next but one image that can be left out
 
@@ -63,19 +63,20 @@ class Closure:
         return [np.where(lag <= first, lag, halting)]
 
 
-def embed(correlation: Anisotropy, lattice: Lattice, accuracy: float) -> Spectrum:
+def embed(correlation: Anisotropy, lattice: Lattice, accuracy: float, most_nodes: int = MOST_NODES) -> Spectrum:
     """The smallest torus whose covariance is the asked one on the lattice, or else the most accurate one in reach.
 
     Args:
         correlation: correlation of the standard-normal field.
         lattice: the lattice.
         accuracy: largest covariance error over all lags of the lattice that is good enough [-].
+        most_nodes: of the torus; the smallest one is tried in any case.
 
     Returns:
         the spectrum; its error may be above the accuracy.
     """
     best = None
-    for along_y, along_x in _closures(correlation, lattice, accuracy):
+    for along_y, along_x in _closures(correlation, lattice, accuracy, most_nodes):
         found = _spectrum(correlation, lattice, along_y, along_x)
         if best is None or found.error < best.error:
             best = found
@@ -89,7 +90,9 @@ def is_accurate(correlation: Anisotropy, lattice: Lattice) -> bool:
     return embed(correlation, lattice, ACCURACY).error <= ACCURACY
 
 
-def _closures(correlation: Anisotropy, lattice: Lattice, accuracy: float) -> Iterator[tuple[Closure, Closure]]:
+def _closures(
+    correlation: Anisotropy, lattice: Lattice, accuracy: float, most_nodes: int
+) -> Iterator[tuple[Closure, Closure]]:
     # Every pair of closures in reach, from the smallest torus up.
     pad_y, pad_x = (_pad(correlation, lattice, accuracy, axis) for axis in ("y", "x"))
     folds = FOLDS if is_aligned(correlation) else ()  # a folded axis takes the correlation to be even in its lag
@@ -98,7 +101,7 @@ def _closures(correlation: Anisotropy, lattice: Lattice, accuracy: float) -> Ite
         + [Closure(count, _fast(count + round(wide * pad)), False) for wide in WIDENINGS]
         for count, pad in ((lattice.rows, pad_y), (lattice.columns, pad_x))
     ]
-    most = min(MOST_NODES, max(FEWEST_NODES, MOST_NODES_RATIO * lattice.rows * lattice.columns))
+    most = min(most_nodes, max(FEWEST_NODES, MOST_NODES_RATIO * lattice.rows * lattice.columns))
     pairs = sorted(product(*options), key=lambda pair: pair[0].nodes * pair[1].nodes)
     return (pair for k, pair in enumerate(pairs) if k == 0 or pair[0].nodes * pair[1].nodes <= most)
 

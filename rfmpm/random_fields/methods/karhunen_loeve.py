@@ -10,6 +10,7 @@ from rfmpm.random_fields.lattice import find_lattice
 from rfmpm.random_fields.methods.kronecker import axis_correlations, is_product
 
 VARIANCE_SHARE = 0.95
+LEAST_SHARE_OF_A_POINT = 0.5  # of its variance: with less, more modes are kept than asked
 MOST_POINTS = 5000  # without a lattice and a separable correlation: the eigenvectors of a dense matrix
 MOST_MODES = 20_000
 COMPARED = 1500  # points between which the covariance error is taken
@@ -49,7 +50,7 @@ class KarhunenLoeve:
     def prepare(
         correlation: Anisotropy, points: np.ndarray, variance_share: float = VARIANCE_SHARE
     ) -> KarhunenLoeveRecord:
-        """Find the fewest modes that hold a share of the variance.
+        """Find the fewest modes that hold a share of the variance, and at least half of it at every point.
 
         Args:
             correlation: correlation of the standard-normal field.
@@ -79,12 +80,16 @@ class KarhunenLoeve:
                 f"karhunen_loeve: {len(points)} points, at most {MOST_POINTS} unless they are on a lattice and the "
                 "correlation is separable along x and y; take method auto"
             )
-        pairs, kept, lost = _largest(values_y, values_x, variance_share)
-        amplitudes = np.sqrt(kept)
-        used_y, used_x = pairs.max(axis=0) + 1
+        share, variance = variance_share, np.zeros(1)
+        while variance.min() < LEAST_SHARE_OF_A_POINT:
+            pairs, kept, lost = _largest(values_y, values_x, share)
+            used_y, used_x = pairs.max(axis=0) + 1
+            variance = modes_y[:, :used_y] ** 2 @ _core(pairs, kept, used_y, used_x) @ (modes_x[:, :used_x] ** 2).T
+            share = 0.5 * (1.0 + share)
         modes_y, modes_x = np.ascontiguousarray(modes_y[:, :used_y]), np.ascontiguousarray(modes_x[:, :used_x])
-        scale = 1.0 / np.sqrt(modes_y**2 @ _core(pairs, kept, used_y, used_x) @ (modes_x**2).T)
-        record = KarhunenLoeveRecord(index, modes_y, modes_x, pairs, amplitudes, scale, np.array(lost), np.array(0.0))
+        record = KarhunenLoeveRecord(
+            index, modes_y, modes_x, pairs, np.sqrt(kept), 1.0 / np.sqrt(variance), np.array(lost), np.array(0.0)
+        )
         return record._replace(error=np.array(_largest_error(correlation, points, record)))
 
     @staticmethod

@@ -65,7 +65,7 @@ class LocalAverageSubdivision:
             the record; it takes one variable per cell, and two for the place of the window.
 
         Raises:
-            ValueError: the points are scattered, or there are too many cells.
+            ValueError: the points are scattered, there are too many cells, or the correlation is not positive definite.
         """
         lattice = require_lattice(points, "local_average_subdivision")
         stretch = _stretch(correlation, lattice) if is_stretched else np.ones(2, dtype=np.int64)
@@ -141,7 +141,10 @@ def _record(correlation: Anisotropy, lattice: Lattice, stretch: np.ndarray) -> L
     windows = np.minimum(first_shape * 2**stages - cells + 1, WIDEST_WINDOW)
     spacings = np.array([lattice.dy, lattice.dx]) / stretch
     first_covariance, estimate, spread = stage_tables(correlation, spacings, first_shape, stages)
-    lower, _ = factor(first_covariance.copy)
+    try:
+        lower, _ = factor(first_covariance.copy)
+    except ValueError as error:
+        raise ValueError(f"local_average_subdivision: {correlation}, first stage: {error}") from error
     nothing = np.zeros(2), np.array(0.0)
     return LasRecord(lattice.index, counts, stretch, windows, lower, first_shape, estimate, spread, *nothing)
 

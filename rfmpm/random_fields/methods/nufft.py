@@ -63,7 +63,7 @@ class Nufft:
             lattice = _auxiliary(correlation, points, drop)
             if 2 * lattice.rows * lattice.columns > most_terms:
                 break
-            spectrum = embed(correlation, lattice, ACCURACY)
+            spectrum = embed(correlation, lattice, ACCURACY, most_terms)
             if np.prod(spectrum.shape) > most_terms:
                 break
             record = _record(correlation, points, lattice, spectrum)

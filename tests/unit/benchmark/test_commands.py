@@ -9,6 +9,7 @@ REPORTS = {
     "stability": ["Will an odd soil break it?", "What failed", "stability_softening.png"],
     "slope": ["How wrong is the run-out", "softening averaged half as often", "over a length, and viscosity"],
     "verification": ["sliding block on an incline", "axial vibration of an elastic bar: phase"],
+    "fields": ["| circulant |", "| ar1 |", "Asked: at most 30 ms"],
     "savings": ["grid cells that no point touches", "imports that `rfmpm check` does not use"],
 }
 FILES = {"slope": "slope_error"}
