@@ -2,7 +2,7 @@
 
 import time
 from dataclasses import dataclass
-from math import nan
+from math import nan, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -58,8 +58,9 @@ def prepare(study, store: Path | None = None) -> Prepared:
     scene = scenes.build(study)
     positions = np.column_stack(scene.points.position)
     means = {"cohesion": getattr(study.material[0], "cohesion_kpa", 0.0) * 1e3}
+    side = study.discretisation.cell_m / sqrt(study.discretisation.points_per_cell)
     prepared = {
-        name: random_field.prepare(settings, means[name], positions, store)
+        name: random_field.prepare(settings, means[name], positions, store, box=(side, side))
         for name, settings in study.random_field.items()
     }
     return Prepared(study, scene, prepared)

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from math import sqrt
 
+from rfmpm.study.distribution_checks import DISTRIBUTION_CHECKS
 from rfmpm.study.errors import Problem
 from rfmpm.study.known import Known, Unknown, problem
 from rfmpm.study.material_checks import MATERIAL_CHECKS
@@ -121,5 +122,6 @@ CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _names_are_unique,
     _field_has_its_material,
     _truncated_normal_can_spread_so,
+    *DISTRIBUTION_CHECKS,
     *MATERIAL_CHECKS,
 ]

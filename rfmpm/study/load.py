@@ -6,14 +6,16 @@ from pathlib import Path
 from typing import Any
 
 from rfmpm.study.errors import StudyError
+from rfmpm.study.sample_file import read_sample_files
 from rfmpm.study.study import Study
 
 
 def load_study(source: str | Path | Mapping[str, Any] | Study) -> Study:
-    """Read and validate a study.
+    """Read and validate a study, with the files it names.
 
     Args:
         source: path of a TOML file, TOML text (it holds a newline or '='), a dict of the file's tables, or a study.
+            The files that it names are beside the TOML file, or in the working directory for a text or a dict.
 
     Returns:
         The validated study.
@@ -24,15 +26,27 @@ def load_study(source: str | Path | Mapping[str, Any] | Study) -> Study:
     if isinstance(source, Study):
         return source
     if isinstance(source, Mapping):
-        return Study(**{str(key): table for key, table in source.items()})
+        return _study({str(key): table for key, table in source.items()}, Path())
     if isinstance(source, str) and ("\n" in source or ("=" in source and not Path(source).exists())):
-        return Study(**_parse(source, "study"))
+        return _study(_parse(source, "study"), Path())
     path = Path(source)
     tables = _parse(_read(path), str(path))
     try:
-        return Study(**tables)
+        return _study(tables, path.parent)
     except StudyError as error:
         raise StudyError(error.problems, str(path)) from None
+
+
+def _study(tables: dict[str, Any], folder: Path) -> Study:
+    # Files are named relative to the folder. What is wrong with them is said together with what is wrong elsewhere.
+    tables, problems = read_sample_files(tables, folder)
+    try:
+        study = Study(**tables)
+    except StudyError as error:
+        raise StudyError([*problems, *error.problems]) from None
+    if problems:
+        raise StudyError(problems)
+    return study
 
 
 def _read(path: Path) -> str:

@@ -25,7 +25,7 @@ FLOORS = {
         "random_fields.conditioning",
     ),
     1: ("mpm.state", "mpm.protocols", "study", "variables", "seeds"),
-    0: ("kernel_tools",),
+    0: ("kernel_tools", "columns"),
 }
 FLOOR_OF = {name: floor for floor, names in FLOORS.items() for name in names}
 NAMESPACES = {"mpm", "random_fields"}  # rooms on several floors: their __init__ imports nothing and offers nothing
