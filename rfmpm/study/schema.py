@@ -110,7 +110,7 @@ def allowed(annotation: Any, info: FieldInfo | None, with_type: bool = True) -> 
     elif members := tables(kind):
         words = _table_in_words(members)
     elif get_origin(kind) is tuple:
-        words = "a list of tables"
+        words = "a list of tables" if tables(get_args(kind)[0]) else "a list of numbers"
     elif get_origin(kind) is dict:
         words = "a table of tables"
     else:
@@ -147,12 +147,10 @@ def _table_in_words(members: Sequence[type[BaseModel]]) -> str:
 
 
 def _metadata(annotation: Any, info: FieldInfo | None) -> list:
-    """All constraints on a value, those inside `Annotated[...] | None` too."""
+    """All constraints on a value, those inside `Annotated[...]`, with or without `| None`, too."""
     found = list(info.metadata) if info else []
-    inner = (
-        [member for member in get_args(annotation) if get_origin(member) is Annotated] if is_union(annotation) else []
-    )
-    for layer in inner:
+    inner = get_args(annotation) if is_union(annotation) else [annotation]
+    for layer in (member for member in inner if get_origin(member) is Annotated):
         for entry in get_args(layer)[1:]:
             found += entry.metadata if isinstance(entry, FieldInfo) else [entry]
     return found
