@@ -110,7 +110,7 @@ def allowed(annotation: Any, info: FieldInfo | None, with_type: bool = True) -> 
     elif members := tables(kind):
         words = _table_in_words(members)
     elif get_origin(kind) is tuple:
-        words = "a list of tables" if tables(get_args(kind)[0]) else "a list of numbers"
+        words = _list_in_words(get_args(kind))
     elif get_origin(kind) is dict:
         words = "a table of tables"
     else:
@@ -137,6 +137,13 @@ def one_of(options: Sequence, value: Any = None) -> str:
         else None
     )
     return f"{listed} (did you mean {shown(meant)}?)" if meant else listed
+
+
+def _list_in_words(members: Sequence) -> str:
+    if tables(members[0]):
+        return "a list of tables"
+    count = "" if Ellipsis in members else f" of {len(members)}"
+    return f"a list{count}, each {allowed(members[0], None)}"
 
 
 def _table_in_words(members: Sequence[type[BaseModel]]) -> str:

@@ -65,7 +65,7 @@ def test_what_fits_together_is_accepted_and_written_out(study, keys):
         (BETA | {"upper_over_mean": 1.1, "distribution": "bounded_tanh", "coefficient_of_variation": 0.4},
          "must be less than 0.3 between"),
         (EMPIRICAL | {"sample": SAMPLE[:9]}, f"{FIELD}.sample: has 9 values: must be at least 10"),
-        (EMPIRICAL | {"sample": 3.0}, f"{FIELD}.sample = 3.0: must be a list of numbers (in any unit)"),
+        (EMPIRICAL | {"sample": 3.0}, f"{FIELD}.sample = 3.0: must be a list, each a number greater than 0"),
         (EMPIRICAL | {"sample": [3.0] * 10}, f"{FIELD}.sample: has equal values only"),
         (EMPIRICAL | {"sample": [*SAMPLE, -1.0]}, f"{FIELD}.sample.20 = -1.0: must be greater than 0"),
         (EMPIRICAL | {"sample": [*SAMPLE, "a"]}, f'{FIELD}.sample.20 = "a": must be a number greater than 0'),
