@@ -8,7 +8,6 @@ import pytest
 
 from rfmpm.random_fields.correlation import CORRELATIONS
 from rfmpm.random_fields.field import prepare, realise
-from rfmpm.random_fields.marginals import MARGINALS
 from rfmpm.random_fields.methods import METHODS
 from rfmpm.random_fields.statistics import statistics
 
@@ -40,8 +39,8 @@ def settings(correlation: str, distribution: str, method: str) -> SimpleNamespac
     )
 
 
-# Correlation and method make the standard-normal field, the distribution turns each of its values: that every correlation
-# goes with every distribution is tested on larger ensembles.
+# Correlation and method make the standard-normal field, the distribution turns each of its values: every correlation is
+# put together with every distribution in the larger ensembles.
 CASES = [*product(CORRELATIONS, ["lognormal"], METHODS), ("markov_ellipsoidal", "gamma", "cholesky")]
 
 
