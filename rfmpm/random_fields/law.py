@@ -22,6 +22,7 @@ from rfmpm.random_fields.marginals import MARGINALS, Marginal
 
 Entry = TypeVar("Entry")
 Box = tuple[float, float]
+DEFAULTS = {"lower_over_mean": 0.0}
 SPACES = {"gaussian": False, "physical": True}  # whether the correlation is that of the physical variable
 AVERAGINGS = {"point": False, "volume": True}  # whether values are averages
 
@@ -71,7 +72,7 @@ def law_of(settings: Any, box: Box | None = None) -> Law:
     """
     base = _base_correlation(settings)
     family = choose(MARGINALS, settings.distribution, "distribution")
-    own = {name: _setting(settings, name) for name in family.needs}
+    own = {name: _setting(settings, name, DEFAULTS.get(name)) for name in family.needs}
     if missing := [name for name, value in own.items() if value is None]:
         raise ValueError(f"{missing[0]}: missing; distribution = {settings.distribution!r} needs it")
     law = Law(base, _setting(settings, "nugget", 0.0), partial(family.from_moments, **own))

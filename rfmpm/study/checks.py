@@ -6,6 +6,7 @@ from math import sqrt
 
 from rfmpm.study.correlation_checks import CORRELATION_CHECKS
 from rfmpm.study.data_file import contradictions
+from rfmpm.study.distribution_checks import DISTRIBUTION_CHECKS
 from rfmpm.study.errors import Problem
 from rfmpm.study.field_checks import FIELD_CHECKS
 from rfmpm.study.known import Known, Unknown, problem
@@ -126,6 +127,7 @@ CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _names_are_unique,
     _truncated_normal_can_spread_so,
     _data_agree,
+    *DISTRIBUTION_CHECKS,
     *MATERIAL_CHECKS,
     *FIELD_CHECKS,
     *CORRELATION_CHECKS,

@@ -142,7 +142,8 @@ def one_of(options: Sequence, value: Any = None) -> str:
 def _list_in_words(members: Sequence) -> str:
     if tables(members[0]):
         return "a list of tables"
-    return f"a list of {len(members)}, each {allowed(members[0], None)}"
+    count = "" if Ellipsis in members else f" of {len(members)}"
+    return f"a list{count}, each {allowed(members[0], None)}"
 
 
 def _table_in_words(members: Sequence[type[BaseModel]]) -> str:
@@ -153,12 +154,10 @@ def _table_in_words(members: Sequence[type[BaseModel]]) -> str:
 
 
 def _metadata(annotation: Any, info: FieldInfo | None) -> list:
-    """All constraints on a value, those inside `Annotated[...] | None` too."""
+    """All constraints on a value, those inside `Annotated[...]`, with or without `| None`, too."""
     found = list(info.metadata) if info else []
-    inner = (
-        [member for member in get_args(annotation) if get_origin(member) is Annotated] if is_union(annotation) else []
-    )
-    for layer in inner:
+    inner = get_args(annotation) if is_union(annotation) else [annotation]
+    for layer in (member for member in inner if get_origin(member) is Annotated):
         for entry in get_args(layer)[1:]:
             found += entry.metadata if isinstance(entry, FieldInfo) else [entry]
     return found

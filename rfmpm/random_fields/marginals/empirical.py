@@ -7,8 +7,9 @@ moments asked for are reached by a power and a factor, which keep values positiv
 asked coefficient of variation is the sample's own.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property, partial
 from math import sqrt
 from typing import ClassVar, Self
 
@@ -50,7 +51,7 @@ class Empirical(Distribution):
         if len(values) < SMALLEST_SAMPLE or not (0.0 < values[0] < values[-1] < np.inf):
             raise ValueError(f"sample: must be at least {SMALLEST_SAMPLE} positive values that are not all equal")
         log_sample = tuple(np.log(values / np.median(values)).tolist())
-        quantile = _log_quantile(log_sample, NODES)
+        quantile = log_quantile(log_sample)(NODES)
 
         def excess(power: float) -> float:
             return _spread(power * quantile)[1] - coefficient_of_variation
@@ -66,7 +67,11 @@ class Empirical(Distribution):
 
     def transform(self, z: np.ndarray) -> np.ndarray:
         """Values of the sample's distribution, same shape as the standard-normal `z`."""
-        return self.factor * np.exp(self.power * _log_quantile(self.log_sample, np.asarray(z, dtype=float)))
+        return self.factor * np.exp(self.power * self._log_quantile(np.asarray(z, dtype=float)))
+
+    @cached_property
+    def _log_quantile(self) -> Callable[[np.ndarray], np.ndarray]:
+        return log_quantile(self.log_sample)
 
 
 def _spread(logarithm: np.ndarray) -> tuple[float, float]:
@@ -89,9 +94,14 @@ def _tail_slopes(log_sample: Sequence[float]) -> tuple[float, float]:
     return float(lower), float(upper)
 
 
-def _log_quantile(log_sample: Sequence[float], z: np.ndarray) -> np.ndarray:
+def log_quantile(log_sample: Sequence[float]) -> Callable[[np.ndarray], np.ndarray]:
+    """Logarithm of the quantile of a sample, its logarithms ascending, as a function of the standard-normal one."""
     from scipy.interpolate import PchipInterpolator
 
-    at, (lower, upper) = _positions(len(log_sample)), _tail_slopes(log_sample)
-    within = PchipInterpolator(at, log_sample)(np.clip(z, at[0], at[-1]))
-    return within + lower * np.minimum(z - at[0], 0.0) + upper * np.maximum(z - at[-1], 0.0)
+    at, slopes = _positions(len(log_sample)), _tail_slopes(log_sample)
+    return partial(_look_up, PchipInterpolator(at, log_sample), (at[0], at[-1]), slopes)
+
+
+def _look_up(spline: Callable, ends: tuple[float, float], slopes: tuple[float, float], z: np.ndarray) -> np.ndarray:
+    beyond = slopes[0] * np.minimum(z - ends[0], 0.0) + slopes[1] * np.maximum(z - ends[1], 0.0)
+    return spline(np.clip(z, *ends)) + beyond
