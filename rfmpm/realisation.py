@@ -16,6 +16,7 @@ from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNI
 from rfmpm.observer import Observer, final_state
 from rfmpm.quantities import QUANTITIES, first_minimum
 from rfmpm.random_fields import properties as random_properties
+from rfmpm.study import StudyError
 from rfmpm.variables import FAILED, STATUS, active_variables
 
 
@@ -59,9 +60,13 @@ def prepare(study, store: Path | None = None) -> Prepared:
 
     Raises:
         OSError: if the store cannot be written.
+        StudyError: if a field cannot be made as asked.
     """
     scene = scenes.build(study)
-    return Prepared(study, scene, random_properties.prepare(study, _site(study, scene), store))
+    try:
+        return Prepared(study, scene, random_properties.prepare(study, _site(study, scene), store))
+    except ValueError as error:
+        raise StudyError([str(error)]) from None
 
 
 def compile_kernels(prepared: Prepared) -> None:

@@ -76,10 +76,10 @@ def prepare(
         theta_v=settings.scale_of_fluctuation_v_m,
         rotation=radians(settings.rotation_deg),
     )
-    for other in shared:
-        if (other.correlation, other.method) == (correlation, settings.method):
-            return PreparedField(correlation, marginal, settings.method, other.record)
-    if store is None:
+    alike = [other for other in shared if (other.correlation, other.method) == (correlation, settings.method)]
+    if alike:
+        record = alike[0].record
+    elif store is None:
         record = method.prepare(correlation, points)
     else:
         record = find_or_prepare(settings.method, correlation, points, store)

@@ -21,7 +21,7 @@ def coarse(monkeypatch):
         points = make_points(study, 0.0, spacing=0.5)
         places = np.column_stack([points["x_initial"], points["y_initial"]])
         prepared = field.prepare(study.random_field["cohesion"], 20e3, places)
-        uppermost = SimpleNamespace(field=prepared, points=places, mean=20e3)
+        uppermost = SimpleNamespace(field=prepared, at_crest=prepared, points=places, mean=20e3)
         return SimpleNamespace(study=study, fields={"cohesion": SimpleNamespace(parts=[uppermost])})
 
     monkeypatch.setattr(realisation, "prepare", prepare)
