@@ -5,7 +5,7 @@ those of its soils, from above all layers down; the part of a soil is what its m
 """
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi, radians, tan
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,7 +17,7 @@ from rfmpm.random_fields.common import reference, take
 from rfmpm.random_fields.cross_correlation import mix, mixing_matrix
 from rfmpm.random_fields.layers import settings_of_soils, soil_of_points
 from rfmpm.random_fields.measurements import Measurements, measurements
-from rfmpm.random_fields.trend import Trend
+from rfmpm.random_fields.trend import ByDepth, Scaled, Trend
 
 LARGEST_ANGLE = 80.0 / 180.0 * pi  # [rad], as for an angle that is not random
 
@@ -74,6 +74,14 @@ class Part:
     points: np.ndarray  # (m, 2) [m]
     members: np.ndarray | slice  # their places among all points that carry the property
     field: field.PreparedField
+
+    @property
+    def at_crest(self) -> field.PreparedField:
+        """The field as if its distribution were everywhere that at the crest: itself where it has no trend."""
+        marginal = self.field.marginal
+        if not isinstance(marginal, Scaled | ByDepth):
+            return self.field
+        return replace(self.field, marginal=marginal.crest)
 
 
 @dataclass(frozen=True)

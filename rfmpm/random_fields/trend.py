@@ -53,32 +53,34 @@ class Trend:
         depth = self.level - np.asarray(points, dtype=float)[:, 1]
         means = mean + self.mean_gain * depth
         _check_positive("mean", means, depth)
+        crest = factory(mean, coefficient_of_variation)
         if self.deviation_gain is None:
-            return Scaled(factory(mean, coefficient_of_variation), means / mean)
+            return Scaled(crest, means / mean)
         deviations = mean * coefficient_of_variation + self.deviation_gain * depth
         _check_positive("standard deviation", deviations, depth)
         _, first, group = np.unique(depth, return_index=True, return_inverse=True)
         marginals = tuple(factory(float(means[k]), float(deviations[k] / means[k])) for k in first)
         order = np.argsort(group, kind="stable")
-        return ByDepth(marginals, tuple(np.split(order, np.cumsum(np.bincount(group))[:-1])))
+        return ByDepth(crest, marginals, tuple(np.split(order, np.cumsum(np.bincount(group))[:-1])))
 
 
 @dataclass(frozen=True)
 class Scaled:
-    """A distribution times a factor of each point, shape (n,) [-]."""
+    """The distribution at depth zero times a factor of each point, shape (n,) [-]."""
 
-    marginal: Marginal
+    crest: Marginal
     factor: np.ndarray
 
     def transform(self, z: np.ndarray) -> np.ndarray:
         """Values at the points from standard-normal `z`, shape (..., n)."""
-        return self.factor * self.marginal.transform(z)
+        return self.factor * self.crest.transform(z)
 
 
 @dataclass(frozen=True)
 class ByDepth:
-    """A distribution for each depth, and the points, indices of shape (k,), that lie there."""
+    """The distribution at depth zero, one for each depth, and the points, indices of shape (k,), that lie there."""
 
+    crest: Marginal
     marginals: tuple[Marginal, ...]
     members: tuple[np.ndarray, ...]
 

@@ -24,6 +24,9 @@ NAMES = {
 def write_field(study, index: int, directory: Path) -> list[str]:
     """Draw one realisation of the cohesion field and compare the statistics of many with the asked ones.
 
+    Both are those of the uppermost soil; the statistics are taken as if its distribution were everywhere that at the
+    crest, so that a trend does not enter them.
+
     Args:
         study: the Study.
         index: of the realisation to draw.
@@ -45,7 +48,7 @@ def write_field(study, index: int, directory: Path) -> list[str]:
     settings = study.random_field["cohesion"]
     prepared = realisation.prepare(study)
     uppermost = prepared.fields["cohesion"].parts[0]
-    field, points, mean = uppermost.field, uppermost.points, uppermost.mean
+    field, points, mean = uppermost.at_crest, uppermost.points, uppermost.mean
     xis = [standard_normal(study.study.seed, 0, i, field.n_variables) for i in range(index, index + SAMPLE)]
     records = statistics(field, settings, mean, points, xis)
     sample = np.array([realise(field, xi) for xi in xis]) / 1000.0
@@ -53,7 +56,8 @@ def write_field(study, index: int, directory: Path) -> list[str]:
     directory.mkdir(parents=True, exist_ok=True)
     path = directory / "field.png"
     if field.conditioning is None:
-        _draw(study, index, points, sample, field.marginal, records, path)
+        drawn = realise(uppermost.field, xis[0]) / 1000.0
+        _draw(study, index, points, drawn, sample, field.marginal, records, path)
     else:
         draw_conditional(study, index, points, field, sample, records, path)
     return [*method_lines(field), *_table(records), *data_lines(field, xis)]
@@ -82,7 +86,16 @@ def _table(records: Sequence) -> list[str]:
     return lines
 
 
-def _draw(study, index: int, points: np.ndarray, sample: np.ndarray, marginal, records: Sequence, path: Path) -> None:
+def _draw(
+    study,
+    index: int,
+    points: np.ndarray,
+    drawn: np.ndarray,
+    sample: np.ndarray,
+    marginal,
+    records: Sequence,
+    path: Path,
+) -> None:
     from rfmpm.mpm.scene import outline
 
     polygon = outline(study)
@@ -94,8 +107,8 @@ def _draw(study, index: int, points: np.ndarray, sample: np.ndarray, marginal, r
         axes = figure.add_subplot(grid[0, :])
         axes.set_title(f"Peak cohesion, realisation {index}")
         places = {"x": points[:, 0], "y": points[:, 1]}
-        ends = tuple(np.percentile(sample[0], [1.0, 99.0]))
-        draw_panel(figure, axes, places, sample[0], polygon, frame, ends, "cohesion [kPa]", STRENGTH_MAP)
+        ends = tuple(np.percentile(drawn, [1.0, 99.0]))
+        draw_panel(figure, axes, places, drawn, polygon, frame, ends, "cohesion [kPa]", STRENGTH_MAP)
         _histogram(figure.add_subplot(grid[1, 0]), index, sample, marginal)
         draw_correlations(figure.add_subplot(grid[1, 1]), records)
         figure.savefig(path, format="png", dpi=DOTS_PER_INCH)

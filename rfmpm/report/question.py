@@ -13,6 +13,12 @@ NAMES = {
     "lost": "lost",
 }
 
+MEANS = {
+    "cohesion": ("cohesion_kpa", " kPa"),
+    "residual_cohesion": ("residual_cohesion_kpa", " kPa"),
+    "friction_angle": ("friction_angle_deg", "° (its tangent is what varies)"),
+}
+
 
 def question(study) -> str:
     """Say what was asked.
@@ -38,16 +44,23 @@ def _body(study) -> str:
 
 
 def _strength(study) -> str:
-    if "cohesion" not in study.random_field:
+    if not study.random_field:
         return "Its strength is the same everywhere and in every realisation."
-    field = study.random_field["cohesion"]
-    mean = next(m.cohesion_kpa for m in study.material if m.name == field.material)
+    properties = "; ".join(_random_property(study, name, field) for name, field in study.random_field.items())
     return (
-        f"Its strength varies from place to place: cohesion has a mean of {mean:g} kPa and a coefficient of variation "
-        f"of {100 * field.coefficient_of_variation:g} %, and stays alike over about "
-        f"{field.scale_of_fluctuation_h_m:g} m along and {field.scale_of_fluctuation_v_m:g} m across the layering. "
+        f"Its strength varies from place to place: {properties}. "
         f"Each realisation is one such {study.geometry.kind} with its own pattern of weak and strong zones, followed "
         f"until it comes to rest, for at most {study.time.end_s:g} s."
+    )
+
+
+def _random_property(study, name: str, field) -> str:
+    key, unit = MEANS[name]
+    mean = getattr(next(m for m in study.material if m.name == field.material), key)
+    return (
+        f"{name.replace('_', ' ')} has a mean of {mean:g}{unit} and a coefficient of variation of "
+        f"{100 * field.coefficient_of_variation:g} %, and stays alike over about "
+        f"{field.scale_of_fluctuation_h_m:g} m along and {field.scale_of_fluctuation_v_m:g} m across the layering"
     )
 
 

@@ -24,7 +24,7 @@ def coarse(monkeypatch):
         settings = study.random_field["cohesion"]
         data = measurements(settings.data or (), settings.measurement_error, lambda kilopascal: 1e3 * kilopascal)
         prepared = field.prepare(settings, 20e3, places, data=data)
-        uppermost = SimpleNamespace(field=prepared, points=places, mean=20e3)
+        uppermost = SimpleNamespace(field=prepared, at_crest=prepared, points=places, mean=20e3)
         return SimpleNamespace(study=study, fields={"cohesion": SimpleNamespace(parts=[uppermost])})
 
     monkeypatch.setattr(realisation, "prepare", prepare)
