@@ -86,7 +86,6 @@ def condition(correlation: Anisotropy, points: np.ndarray, data: StandardNormalD
     deviation[nearest[exact]] = 0.0
     neighbours, from_neighbours, error = _neighbours(correlation, points, data.places, weights, nearest, on_point)
     left = among - from_neighbours @ _covariance(correlation, points[neighbours], data.places)
-    left[on_point] = left[:, on_point] = 0.0
     residual = _residual_factor(0.5 * (left + left.T) + np.diag(data.error_variances), ~exact)
     on_points = np.where(on_point, nearest, -1)
     mean = weights @ data.values

@@ -50,6 +50,30 @@ def test_the_likelihood_is_that_of_a_normal_density():
     assert profile.plain[k] == pytest.approx(expected, abs=1e-3)
 
 
+@pytest.mark.parametrize("trend", ["constant", "linear"])
+def test_the_restricted_likelihood_is_that_of_what_no_trend_changes(trend):
+    from scipy.linalg import null_space
+    from scipy.stats import multivariate_normal
+
+    sounding = synthetic(1, 4.0)
+    profile = likelihood(sounding, "markov_separable", trend)
+    shape = np.vander(sounding.depth, 1 if trend == "constant" else 2)
+    contrasts = null_space(shape.T).T
+    best = int(np.argmax(profile.restricted))
+    expected = []
+    for k in (best, best + 300):
+        correlation = vertical_correlation(
+            "markov_separable", profile.theta[k], sounding.depth[:, None] - sounding.depth[None, :]
+        )
+        covariance = profile.variance[k] * contrasts @ correlation @ contrasts.T
+        expected.append(
+            multivariate_normal(np.zeros(len(contrasts)), covariance).logpdf(contrasts @ np.log(sounding.value))
+        )
+    found = profile.restricted[best + 300] - profile.restricted[best]
+    # splines, and a nugget of 1e-9; the difference is of the order of one
+    assert found == pytest.approx(expected[1] - expected[0], abs=3e-3)
+
+
 def test_the_interval_is_where_the_likelihood_has_fallen_by_half_chi_squared():
     x = np.linspace(-10.0, 10.0, 20_001)
     interval = profile_interval(x, -0.5 * (x - 1.0) ** 2)
