@@ -55,7 +55,7 @@ SERIES = tuple(("nufft", {"most_terms": 2**k}) for k in (20, 22))
 CASES = (
     Case(
         "ellipsoidal, 4 800 points", "markov_ellipsoidal", 120, 40,
-        (DEFAULT, EXACT, ("cholesky", {}), ("karhunen_loeve", {}), *LAS), {"gstools": 1000.0, "geone": 3.0},
+        (DEFAULT, EXACT, ("cholesky", {}), *LAS), {"gstools": 1000.0, "geone": 3.0},
     ),
     Case(
         "ellipsoidal, 400 000 points", "markov_ellipsoidal", 1000, 400, (DEFAULT, EXACT),
