@@ -17,6 +17,16 @@ from rfmpm.study import Study
 from rfmpm.variables import active_variables
 
 TRIAL_STEPS = 200
+FRICTIONAL = ("mohr_coulomb", "drucker_prager")
+RANDOM_FRICTION = "random friction"
+TINY_FIELD = {
+    "material": "soil",
+    "distribution": "lognormal",
+    "coefficient_of_variation": 0.1,
+    "correlation": "markov_separable",
+    "scale_of_fluctuation_h_m": 1.0,
+    "scale_of_fluctuation_v_m": 1.0,
+}
 
 
 def estimate(study: Study) -> dict[str, int | float]:
@@ -70,10 +80,15 @@ def warmup() -> Iterator[str]:
     Yields:
         The name of each combination, once it is ready.
     """
-    combinations = list(product(SHAPES, LAWS, WALLS, WALLS))
-    for number, (shape, law, base, sides) in enumerate(combinations, start=1):
-        realisation.compile_kernels(realisation.prepare(_tiny_study(shape, law, base, sides)))
-        yield f"{number}/{len(combinations)}  {shape}, {law}, {base} base, {sides} sides"
+    soils = [*LAWS, *(f"{law} with {RANDOM_FRICTION}" for law in FRICTIONAL)]
+    combinations = list(product(SHAPES, soils, WALLS, WALLS))
+    for number, (shape, soil, base, sides) in enumerate(combinations, start=1):
+        law = soil.split()[0]
+        study = _tiny_study(shape, law, base, sides)
+        if soil != law:
+            study = study.with_changes({"random_field.friction_angle": TINY_FIELD})
+        realisation.compile_kernels(realisation.prepare(study))
+        yield f"{number}/{len(combinations)}  {shape}, {soil}, {base} base, {sides} sides"
 
 
 def _tiny_study(shape: str, law: str, base: str, sides: str) -> Study:
@@ -86,7 +101,7 @@ def _tiny_study(shape: str, law: str, base: str, sides: str) -> Study:
     }
     if law != "elastic":
         material["cohesion_kpa"] = 20.0
-    if law in ("mohr_coulomb", "drucker_prager"):
+    if law in FRICTIONAL:
         material["friction_angle_deg"] = 30.0
     return Study(
         study={"name": "warm-up", "seed": 0},

@@ -1,13 +1,16 @@
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
 
+import rfmpm
 from rfmpm import results
 from rfmpm.variables import HISTORY_VARIABLES, POINT_VARIABLES
 
 POINTS = 5
+DRAINED = Path(__file__).parents[3] / "configs" / "drained_cross_correlated.toml"
 
 
 def points(shift):
@@ -57,3 +60,15 @@ def test_units_and_time_axis(tmp_path, study, name):
     assert found[name].attrs["units"] == POINT_VARIABLES[name].unit
     assert found["time"].attrs["axis"] == "T"
     assert found.attrs["status"] == "ok"
+
+
+def test_random_properties_are_kept_where_they_are_random(tmp_path):
+    changes = {"discretisation.cell_m": 1.0, "time.end_s": 0.1}
+    study = rfmpm.load_study(DRAINED).with_changes(changes)
+    results.write_simulation(tmp_path / "simulation.nc", rfmpm.simulate(study, index=2), study)
+    fields = rfmpm.realise_fields(study, index=2)
+    with xr.open_dataset(tmp_path / "simulation.nc") as data:
+        assert data["friction_angle"].attrs["units"] == "rad"
+        assert "residual_cohesion" not in data
+        for name, values in fields.items():
+            np.testing.assert_array_equal(data[name], values)
