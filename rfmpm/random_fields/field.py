@@ -11,10 +11,17 @@ from typing import Any
 import numpy as np
 
 from rfmpm.random_fields.correlation.protocol import Correlation
+from rfmpm.random_fields.gaussian_space import InGaussianSpace
 from rfmpm.random_fields.law import Box, choose, law_of
 from rfmpm.random_fields.marginals import Marginal
 from rfmpm.random_fields.methods import METHODS
 from rfmpm.random_fields.store import find_or_prepare
+
+# Not every correlation is that of a physical variable with the asked distribution, least of all a very smooth one.
+NO_SUCH_FIELD = (
+    "no standard-normal field has physical values with exactly this distribution and this correlation; take "
+    'correlation_space = "gaussian" with averaging = "point", a rougher correlation or a lower coefficient_of_variation'
+)
 
 
 @dataclass(frozen=True)
@@ -70,10 +77,15 @@ def prepare(
     method = choose(METHODS, settings.method, "method")
     law = law_of(settings, box)
     marginal = law.marginal(mean, settings.coefficient_of_variation)
-    if store is None:
-        record = method.prepare(law.correlated, points)
-    else:
-        record = find_or_prepare(settings.method, law.correlated, points, store)
+    try:
+        if store is None:
+            record = method.prepare(law.correlated, points)
+        else:
+            record = find_or_prepare(settings.method, law.correlated, points, store)
+    except ValueError as error:
+        if isinstance(law.correlated, InGaussianSpace):
+            raise ValueError(f"{error}: {NO_SUCH_FIELD}") from error
+        raise
     return PreparedField(
         law.correlation, marginal, settings.method, record, law.nugget, len(points), law.variance_factor
     )
