@@ -13,6 +13,7 @@ import numpy as np
 
 from rfmpm.random_fields.conditioning import Conditioning, condition, update
 from rfmpm.random_fields.correlation.protocol import Correlation
+from rfmpm.random_fields.gaussian_space import InGaussianSpace
 from rfmpm.random_fields.law import Box, Law, choose, law_of
 from rfmpm.random_fields.marginals import Marginal
 from rfmpm.random_fields.measurements import Measurements, distinct, standard_normal_data
@@ -20,6 +21,12 @@ from rfmpm.random_fields.methods import AUTO, METHODS
 from rfmpm.random_fields.methods import choose as fastest_method
 from rfmpm.random_fields.store import find_or_prepare
 from rfmpm.random_fields.trend import Trend
+
+# Not every correlation is that of a physical variable with the asked distribution, least of all a very smooth one.
+NO_SUCH_FIELD = (
+    "no standard-normal field has physical values with exactly this distribution and this correlation; take "
+    'correlation_space = "gaussian" with averaging = "point", a rougher correlation or a lower coefficient_of_variation'
+)
 
 
 @dataclass(frozen=True)
@@ -148,9 +155,14 @@ def _record(
     for other in shared:
         if (other.correlation, other.method) == (law.correlation, name):
             return name, other.record
-    if store is None:
-        return name, method.prepare(law.correlated, points)
-    return name, find_or_prepare(name, law.correlated, points, store)
+    try:
+        if store is None:
+            return name, method.prepare(law.correlated, points)
+        return name, find_or_prepare(name, law.correlated, points, store)
+    except ValueError as error:
+        if isinstance(law.correlated, InGaussianSpace):
+            raise ValueError(f"{error}: {NO_SUCH_FIELD}") from error
+        raise
 
 
 def _check_together(settings: Any, trend: Trend | None, has_data: bool) -> None:

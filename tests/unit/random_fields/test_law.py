@@ -133,6 +133,13 @@ def test_settings_at_odds_are_refused_with_the_key(settings, points, changes, sa
         prepare(settings, 20e3, points, box=BOX)
 
 
+def test_a_smooth_correlation_that_no_lognormal_has_is_refused_with_what_to_change(settings):
+    x, y = np.meshgrid(0.25 * np.arange(24), 0.25 * np.arange(12))
+    settings.correlation, settings.correlation_space = "gaussian", "physical"
+    with pytest.raises(ValueError, match=r'not positive definite.*take correlation_space = "gaussian"'):
+        prepare(settings, 20e3, np.column_stack([x.ravel(), y.ravel()]))
+
+
 def test_averages_need_to_know_their_box(settings, points):
     settings.averaging = "volume"
     with pytest.raises(ValueError, match="needs the size of the points' boxes"):
