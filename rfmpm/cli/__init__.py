@@ -187,7 +187,6 @@ def field(
 
     for line in report.write_field(settings, index, folder):
         typer.echo(line)
-    typer.echo(folder / "field.png")
     if write_xi is not None:
         from rfmpm import draw_xi, results
 

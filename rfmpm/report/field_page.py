@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,81 +22,115 @@ NAMES = {
 }
 
 
-def write_field(study, index: int, directory: Path) -> list[str]:
-    """Draw one realisation of the cohesion field and compare the statistics of many with the asked ones.
+class View(NamedTuple):
+    """How a random property is shown; its statistics are those of its field."""
 
-    Both are those of the uppermost soil; the statistics are taken as if its distribution were everywhere that at the
-    crest, so that a trend does not enter them.
+    title: str
+    label: str
+    per_unit: float  # SI units of the property in one of the label
+    field: str  # what the field is
+    unit: str
+    per_field_unit: float  # SI units of the field in one of that
+
+
+VIEWS = {
+    "cohesion": View("Peak cohesion", "cohesion [kPa]", 1e3, "cohesion", "kPa", 1e3),
+    "residual_cohesion": View("Residual cohesion", "cohesion [kPa]", 1e3, "residual cohesion", "kPa", 1e3),
+    "friction_angle": View(
+        "Peak angle of friction", "angle [degrees]", np.pi / 180.0, "tangent of the angle of friction", "-", 1.0
+    ),
+}
+
+
+def write_field(study, index: int, directory: Path) -> list[str]:
+    """Draw one realisation of each random property and compare the statistics of many with the asked ones.
+
+    The statistics are those of the uppermost soil, as if its distribution were everywhere that at the crest, so that
+    layers and trends do not enter them.
 
     Args:
         study: the Study.
         index: of the realisation to draw.
-        directory: gets field.png.
+        directory: gets field.png of the first random property, and field_<name>.png of every further one.
 
     Returns:
-        Lines of a table: asked and found mean, standard deviation [kPa] and correlations [-], with standard errors.
-        With data, the asked values are those of the conditional distribution, and the picture shows data, conditional
-        mean, two realisations and conditional standard deviation.
+        For each property, lines of a table: asked and found mean, standard deviation and correlations [-], with
+        standard errors; then the path of the picture. With data, the asked values are those of the conditional
+        distribution, and the picture shows data, conditional mean, two realisations and conditional standard deviation.
         A study without a random field gives one line that says so, and no picture.
     """
     from rfmpm import realisation
-    from rfmpm.random_fields.field import realise
-    from rfmpm.random_fields.statistics import statistics
-    from rfmpm.seeds import standard_normal
+    from rfmpm.random_fields import properties
 
-    if "cohesion" not in study.random_field:
+    if not study.random_field:
         return ["no random field in this study: every realisation is the same"]
-    settings = study.random_field["cohesion"]
     prepared = realisation.prepare(study)
-    uppermost = prepared.fields["cohesion"].parts[0]
-    field, points, mean = uppermost.at_crest, uppermost.points, uppermost.mean
-    xis = [standard_normal(study.study.seed, 0, i, field.n_variables) for i in range(index, index + SAMPLE)]
-    records = statistics(field, settings, mean, points, xis)
-    sample = np.array([realise(field, xi) for xi in xis]) / 1000.0
+    xis = [realisation.draw_xi(prepared, i) for i in range(index, index + SAMPLE)]
+    drawn = properties.realise(prepared.properties, xis[0])
+    places = np.column_stack(prepared.scene.points.position)
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
-    path = directory / "field.png"
+    lines, start = [], 0
+    for number, (name, entry) in enumerate(prepared.fields.items()):
+        path = directory / (f"field_{name}.png" if number else "field.png")
+        own = [xi[start : start + entry.parts[0].field.n_variables] for xi in xis]
+        lines += _write_property(study, index, name, entry, own, (places, drawn[name]), path)
+        start += entry.n_variables
+    return lines
+
+
+def _write_property(study, index: int, name: str, entry, xis: Sequence, whole: tuple, path: Path) -> list[str]:
+    from rfmpm.random_fields.field import realise
+    from rfmpm.random_fields.statistics import statistics
+
+    look, uppermost = VIEWS[name], entry.parts[0]
+    field, points = uppermost.at_crest, uppermost.points
+    records = statistics(field, study.random_field[name], uppermost.mean, points, xis)
+    sample = np.array([realise(field, xi) for xi in xis]) / look.per_field_unit
     if field.conditioning is None:
-        drawn = realise(uppermost.field, xis[0]) / 1000.0
-        _draw(study, index, points, drawn, sample, field.marginal, records, path)
+        places, values = whole
+        _draw(study, index, look, (places, values / look.per_unit), sample, field.marginal, records, path)
     else:
-        draw_conditional(study, index, points, field, sample, records, path)
-    return [*method_lines(field), *_table(records), *data_lines(field, xis)]
+        draw_conditional(study, index, look, points, field, sample, records, path)
+    of = f" of the uppermost of {len(entry.parts)} soils" if len(entry.parts) > 1 else ""
+    return [
+        f"{look.field}{of}: {method_line(field)}",
+        *_table(records, look),
+        *data_lines(field, xis),
+        str(path),
+    ]
 
 
-def method_lines(field) -> list[str]:
+def method_line(field) -> str:
     """How the field is made, and what is known of its error before any sampling."""
     from rfmpm.random_fields.methods import METHODS
 
     error = METHODS[field.method].covariance_error(field.record)
-    return [f"method {field.method}, {field.n_variables} variables; largest error of its covariance {error:.1e}"]
+    averaged = f"; averages over volumes keep {field.variance_factor:.3f} of the variance"
+    return (
+        f"method {field.method}, {field.n_variables} variables; largest error of its covariance {error:.1e}"
+        f"{averaged if field.variance_factor < 1.0 else ''}"
+    )
 
 
-def _table(records: Sequence) -> list[str]:
+def _table(records: Sequence, look: View) -> list[str]:
     lines = [
         f"{SAMPLE} realisations on the material points; correlations of the standard-normal field below the marginal",
         f"{'':<26}{'lag [m]':>7}{'asked':>10}{'found':>10}{'std. error':>12}{'in std. errors':>18}",
     ]
     for record in records:
-        unit = 1000.0 if record.name in ("mean", "standard_deviation") else 1.0
-        name = NAMES[record.name] + (" [kPa]" if unit > 1.0 else "")
-        lag = f"{record.lag:.2f}" if unit == 1.0 else ""
+        is_of_values = record.name in ("mean", "standard_deviation")
+        unit = look.per_field_unit if is_of_values else 1.0
+        name = NAMES[record.name] + (f" [{look.unit}]" if is_of_values else "")
+        lag = "" if is_of_values else f"{record.lag:.2f}"
         asked, found, error = (value / unit for value in (record.asked, record.found, record.standard_error))
         ratio = (found - asked) / error if error > 0.0 else float("nan")
         lines.append(f"{name:<26}{lag:>7}{asked:>10.4f}{found:>10.4f}{error:>12.4f}{ratio:>18.1f}")
     return lines
 
 
-def _draw(
-    study,
-    index: int,
-    points: np.ndarray,
-    drawn: np.ndarray,
-    sample: np.ndarray,
-    marginal,
-    records: Sequence,
-    path: Path,
-) -> None:
+def _draw(study, index: int, look: View, whole: tuple, sample: np.ndarray, marginal, records, path: Path) -> None:
+    """Draw the property in the whole body, values of `whole` at its places, and the statistics of `sample`."""
     from rfmpm.mpm.scene import outline
 
     polygon = outline(study)
@@ -105,23 +140,23 @@ def _draw(
         figure = new_figure(WIDTH, height + 3.3)
         grid = figure.add_gridspec(2, 2, height_ratios=[height, 3.3])
         axes = figure.add_subplot(grid[0, :])
-        axes.set_title(f"Peak cohesion, realisation {index}")
-        places = {"x": points[:, 0], "y": points[:, 1]}
-        ends = tuple(np.percentile(drawn, [1.0, 99.0]))
-        draw_panel(figure, axes, places, drawn, polygon, frame, ends, "cohesion [kPa]", STRENGTH_MAP)
-        _histogram(figure.add_subplot(grid[1, 0]), index, sample, marginal)
+        axes.set_title(f"{look.title}, realisation {index}")
+        (x, y), values = whole[0].T, whole[1]
+        ends = tuple(np.percentile(values, [1.0, 99.0]))
+        draw_panel(figure, axes, {"x": x, "y": y}, values, polygon, frame, ends, look.label, STRENGTH_MAP)
+        _histogram(figure.add_subplot(grid[1, 0]), index, look, sample, marginal)
         draw_correlations(figure.add_subplot(grid[1, 1]), records)
         figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
 
 
-def _histogram(axes, index: int, sample: np.ndarray, marginal) -> None:
+def _histogram(axes, index: int, look: View, sample: np.ndarray, marginal) -> None:
     # The asked density by change of variable from the standard normal: it needs no formula of each distribution.
     z = np.linspace(-4.0, 4.0, 801)
-    value = marginal.transform(z) / 1000.0
+    value = marginal.transform(z) / look.per_field_unit
     density = np.exp(-0.5 * z**2) / np.sqrt(2.0 * np.pi) / np.gradient(value, z)
     edges = np.linspace(*np.percentile(sample, [0.05, 99.95]), 41)
     axes.hist(sample.ravel(), bins=edges, density=True, color=BLUE, alpha=0.3, label=f"{len(sample)} realisations")
     axes.hist(sample[0], bins=edges, density=True, histtype="step", color=BLUE, label=f"realisation {index}")
     axes.plot(value, density, color=VERMILION, label="asked")
-    axes.set(xlabel="cohesion [kPa]", ylabel="density [1/kPa]", title="Distribution", xlim=edges[[0, -1]])
+    axes.set(xlabel=f"{look.field} [{look.unit}]", ylabel="density", title="Distribution", xlim=edges[[0, -1]])
     axes.legend(loc="upper right")

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -40,9 +42,7 @@ def test_lags_without_pairs_are_left_out():
 def test_statistics_see_a_field_with_twice_the_scale(settings):
     points = lattice()[::3]
     prepared = prepare(settings, 20e3, points)
-    asked = type(prepared)(
-        CORRELATIONS["markov_ellipsoidal"](3.0, 0.5), prepared.marginal, prepared.method, prepared.record
-    )
+    asked = replace(prepared, correlation=CORRELATIONS["markov_ellipsoidal"](3.0, 0.5))
     xis = np.random.default_rng(1).standard_normal((300, prepared.n_variables))
     right = {(s.name, s.lag): s for s in statistics(prepared, settings, 20e3, points, xis)}
     wrong = statistics(asked, settings, 20e3, points, xis)
