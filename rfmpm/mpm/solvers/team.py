@@ -1,0 +1,298 @@
+"""The passes of a step shared by several threads, for one large scene.
+
+Every thread has a range of the points, and arrays of its own that these add to; then every thread sums the arrays of
+all over its share of the rows of nodes, in their order. So results depend on the number of threads, by rounding, but
+not on which of them is faster.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rfmpm.kernel_tools import kernel, part, side_by_side, start_threads, zeros
+from rfmpm.mpm.cells import Cells, divide
+from rfmpm.mpm.nonlocal_softening import convolve_columns, convolve_rows, share_strain, sum_strain, widen
+from rfmpm.mpm.solvers.grid import clear, mix_straining, subtract_second_projection, update_grid
+from rfmpm.mpm.stages import collect, make_tally
+from rfmpm.mpm.transfer import carry_at_once, load_nodes, move_points, project_twice, strain_points, update_velocities
+
+KINETIC, FALL, WORK, PLASTIC, FASTEST, FRICTION = range(6)
+CACHE_LINE = 8  # numbers
+
+
+class Team(NamedTuple):
+    """Threads, and what each has for itself; the arrays are zero between the passes."""
+
+    threads: int  # that there are; if fewer than shares, a thread takes several
+    values: np.ndarray  # (shares, rows, columns, 4)
+    parts: np.ndarray  # (shares, rows, columns, 4)
+    volumes: np.ndarray  # (shares, cells) [m3/m]
+    contents: np.ndarray  # (shares, cells): volume times volumetric strain rate, or times pressure
+    boxes: np.ndarray  # (shares, CACHE_LINE) nodes that the points of each touch: columns, rows
+    found: np.ndarray  # (shares, CACHE_LINE) energies and the like
+    lost: np.ndarray  # (shares,) point that left the grid, or -1
+
+    def update_nodes(self, grid, walls, box, gravity, damping, dt, share):
+        """By shares of the rows."""
+        share_out(update_rows, self, (grid, walls, box, gravity, damping, dt, share, self))
+
+    def filter_nodes(self, points, axes, grid, box):
+        """By shares of the points, then of the rows."""
+        share_out(project_some, self, (points, axes, grid, self))
+        share_out(filter_rows, self, (grid, box, self))
+
+    def update_points(self, points, axes, grid, filtered, blend, box, own_share):
+        """By shares of the points, then of the rows."""
+        share_out(update_some, self, (points, axes, grid, filtered, blend, self))
+        share_out(mix_rows, self, (grid, box, own_share, self))
+        return self.found[:, FRICTION].sum()
+
+    def carry(self, points, law, history, axes, grid, cells, box, dt):
+        """By shares of the points, with shares of the cells in between, then of the rows."""
+        if cells is None:
+            share_out(carry_some, self, (points, law, history, axes, grid, dt, self))
+        else:
+            share_out(move_some, self, (points, axes, grid, cells, dt, self))
+            if self.lost.max() < 0:
+                share_out(mean_dilatation, self, (cells, self))
+                share_out(strain_some, self, (points, law, history, axes, cells, dt, self))
+                share_out(mean_pressure, self, (cells, self))
+                share_out(load_some, self, (points, axes, cells, self))
+        boxes, found = self.boxes, self.found
+        touched = boxes[:, 0].min(), boxes[:, 1].max(), boxes[:, 2].min(), boxes[:, 3].max()
+        share_out(collect_rows, self, (grid, axes, touched, self))
+        kinetic, fall, fastest = found[:, KINETIC].sum(), found[:, FALL].sum(), found[:, FASTEST].max()
+        return kinetic, fall, found[:, WORK].sum(), found[:, PLASTIC].sum(), fastest, touched, self.lost.max()
+
+    def average(self, points, history, axes, averaging, box):
+        """By shares of the points, of the rows twice, of the points."""
+        share_out(sum_some, self, (points, history, axes, self))
+        share_out(average_along_rows, self, (averaging, box, self))
+        share_out(average_along_columns, self, (averaging, box, self))
+        share_out(share_some, self, (points, history, axes, averaging, self))
+
+
+def make_team(size: int, grid, cells) -> Team:
+    """Make a team for one run.
+
+    Args:
+        size: number of shares, at least 1; as many threads take them as there are cores.
+        grid: nodes of the run.
+        cells: sums over the points of a cell of the run, or None.
+
+    Returns:
+        The team.
+    """
+    rows, columns = grid.mass.shape
+    count = 0 if cells is None else cells.volume.size
+    nodes = (zeros(size * rows, columns).reshape(size, rows, columns, 4) for _ in range(2))
+    own = np.zeros((size, count)), np.zeros((size, count))
+    boxes = np.tile(np.array([0, -1] * (CACHE_LINE // 2)), (size, 1))
+    return Team(min(size, start_threads()), *nodes, *own, boxes, np.zeros((size, CACHE_LINE)), np.full(size, -1))
+
+
+@kernel
+def share_out(function, team, arguments):
+    """Call a kernel for every share."""
+    side_by_side(function, len(team.lost), team.threads, arguments)
+
+
+@kernel
+def share_of(count, rank, size):
+    """First and one after the last of one share of so many things."""
+    return count * rank // size, count * (rank + 1) // size
+
+
+@kernel
+def own_rows(box, rank, team):
+    """Part of a box whose rows are one share of its."""
+    first, end = share_of(box[3] - box[2] + 1, rank, len(team.lost))
+    return box[0], box[1], box[2] + first, box[2] + end - 1
+
+
+@kernel
+def own_part(record, points, rank, team):
+    """What a record holds of one share of the points."""
+    first, end = share_of(points.mass.size, rank, len(team.lost))
+    return part(record, first, end)
+
+
+@kernel
+def cells_of(cells, points, rank, team):
+    """The cells as one share of the points sees them."""
+    first, end = share_of(points.mass.size, rank, len(team.lost))
+    of, gradient, change = cells.of[first:end], cells.gradient[4 * first : 4 * end], cells.change[first:end]
+    return Cells(of, gradient, change, cells.volume, cells.dilatation, cells.pressure)
+
+
+@kernel
+def note_lost(rank, lost, points, team):
+    """Note the point that left the grid by its number among all."""
+    team.lost[rank] = lost if lost < 0 else share_of(points.mass.size, rank, len(team.lost))[0] + lost
+
+
+@kernel
+def put_box(team, rank, box):
+    """Note the nodes that one share of the points touches."""
+    for k in range(len(box)):
+        team.boxes[rank, k] = box[k]
+
+
+@kernel
+def note_motion(rank, tally, team):
+    """Note the sums over the points that are known when they have moved."""
+    team.found[rank, KINETIC], team.found[rank, FALL] = tally.kinetic.sum(), tally.fall.sum()
+    team.found[rank, FASTEST] = tally.fastest.max()
+
+
+@kernel
+def note_work(rank, tally, team):
+    """Note those that are known when they have been strained."""
+    team.found[rank, WORK], team.found[rank, PLASTIC] = tally.work.sum(), tally.plastic.sum()
+
+
+@kernel
+def gather_rows(stack, boxes, total, box):
+    """Move what all have added into `total`, for the nodes of a box.
+
+    Args:
+        stack: shape (shares, rows, columns, 4); zero afterwards.
+        boxes: nodes that each share has added to.
+        total: shape (rows, columns, 4).
+        box: first and last column and row of the nodes to sum.
+    """
+    clear(total, box)
+    for rank in range(len(stack)):
+        left, right, low, high = boxes[rank, 0], boxes[rank, 1], boxes[rank, 2], boxes[rank, 3]
+        for row in range(max(low, box[2]), min(high, box[3]) + 1):
+            for column in range(left, right + 1):
+                for lane in range(4):
+                    total[row, column, lane] += stack[rank, row, column, lane]
+                    stack[rank, row, column, lane] = 0.0
+
+
+@kernel
+def gather_cells(stack, total, rank):
+    """Move what all have added to one share of the cells into `total`; returns that share. `stack` is zero afterwards."""
+    first, end = share_of(total.size, rank, len(stack))
+    total[first:end] = 0.0
+    for other in range(len(stack)):
+        for cell in range(first, end):
+            total[cell] += stack[other, cell]
+            stack[other, cell] = 0.0
+    return first, end
+
+
+@kernel
+def update_rows(rank, grid, walls, box, gravity, damping, dt, share, team):
+    update_grid(grid, walls, own_rows(box, rank, team), gravity, damping, dt, share)
+
+
+@kernel
+def project_some(rank, points, axes, grid, team):
+    project_twice(own_part(points, points, rank, team), axes, grid, team.values[rank])
+
+
+@kernel
+def filter_rows(rank, grid, box, team):
+    own = own_rows(box, rank, team)
+    gather_rows(team.values, team.boxes, grid.filtered, own)
+    subtract_second_projection(grid, own)
+
+
+@kernel
+def update_some(rank, points, axes, grid, filtered, blend, team):
+    update_velocities(own_part(points, points, rank, team), axes, grid, filtered, blend, team.values[rank])
+
+
+@kernel
+def mix_rows(rank, grid, box, own_share, team):
+    own = own_rows(box, rank, team)
+    gather_rows(team.values, team.boxes, grid.straining, own)
+    team.found[rank, FRICTION] = mix_straining(grid, own, own_share)
+
+
+@kernel
+def carry_some(rank, points, law, history, axes, grid, dt, team):
+    tally = make_tally()
+    own, own_law, own_history = (
+        own_part(points, points, rank, team), own_part(law, points, rank, team), own_part(history, points, rank, team),
+    )  # fmt: skip
+    lost, box = carry_at_once(
+        own, own_law, own_history, axes, grid.straining, team.parts[rank], team.values[rank], dt, tally
+    )
+    note_lost(rank, lost, points, team)
+    put_box(team, rank, box)
+    note_motion(rank, tally, team)
+    note_work(rank, tally, team)
+
+
+@kernel
+def move_some(rank, points, axes, grid, cells, dt, team):
+    tally = make_tally()
+    own, own_cells = own_part(points, points, rank, team), cells_of(cells, points, rank, team)
+    lost = move_points(own, axes, grid.straining, own_cells, team.contents[rank], dt, tally)
+    note_lost(rank, lost, points, team)
+    note_motion(rank, tally, team)
+
+
+@kernel
+def mean_dilatation(rank, cells, team):
+    first, end = gather_cells(team.contents, cells.dilatation, rank)
+    divide(cells.dilatation[first:end], cells.volume[first:end])
+
+
+@kernel
+def strain_some(rank, points, law, history, axes, cells, dt, team):
+    tally = make_tally()
+    own, own_law, own_history = (
+        own_part(points, points, rank, team), own_part(law, points, rank, team), own_part(history, points, rank, team),
+    )  # fmt: skip
+    own_cells = cells_of(cells, points, rank, team)
+    strain_points(own, own_law, own_history, axes, own_cells, team.volumes[rank], team.contents[rank], dt, tally)
+    note_work(rank, tally, team)
+
+
+@kernel
+def mean_pressure(rank, cells, team):
+    gather_cells(team.volumes, cells.volume, rank)
+    first, end = gather_cells(team.contents, cells.pressure, rank)
+    divide(cells.pressure[first:end], cells.volume[first:end])
+
+
+@kernel
+def load_some(rank, points, axes, cells, team):
+    own, own_cells = own_part(points, points, rank, team), cells_of(cells, points, rank, team)
+    put_box(team, rank, load_nodes(own, axes, own_cells, team.parts[rank], team.values[rank]))
+
+
+@kernel
+def collect_rows(rank, grid, axes, box, team):
+    own = own_rows(box, rank, team)
+    gather_rows(team.parts, team.boxes, grid.parts, own)
+    gather_rows(team.values, team.boxes, grid.sums, own)
+    collect(grid.parts, grid.mass, own, axes)
+
+
+@kernel
+def sum_some(rank, points, history, axes, team):
+    own, own_history = own_part(points, points, rank, team), own_part(history, points, rank, team)
+    sum_strain(own, own_history, axes, team.values[rank])
+
+
+@kernel
+def average_along_rows(rank, averaging, box, team):
+    own, wide = own_rows(box, rank, team), widen(averaging, box)
+    gather_rows(team.values, team.boxes, averaging.sums, (wide[0], wide[1], own[2], own[3]))
+    convolve_rows(averaging, box, own)
+
+
+@kernel
+def average_along_columns(rank, averaging, box, team):
+    convolve_columns(averaging, box, own_rows(box, rank, team))
+
+
+@kernel
+def share_some(rank, points, history, axes, averaging, team):
+    own, own_history = own_part(points, points, rank, team), own_part(history, points, rank, team)
+    share_strain(own, own_history, axes, averaging)
