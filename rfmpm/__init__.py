@@ -68,7 +68,15 @@ def realise_fields(study: Any, index: int = 0, level: int = 0) -> "dict[str, np.
     return realisation.realise_fields(load_study(study), index, level=level)
 
 
-def simulate(study: Any, index: int = 0, *, level: int = 0, frames: int = 0, homogeneous: bool = False) -> "Outcome":
+def simulate(
+    study: Any,
+    index: int = 0,
+    *,
+    level: int = 0,
+    frames: int = 0,
+    homogeneous: bool = False,
+    threads: int | None = None,
+) -> "Outcome":
     """Simulate one realisation.
 
     Args:
@@ -77,6 +85,8 @@ def simulate(study: Any, index: int = 0, *, level: int = 0, frames: int = 0, hom
         level: level of a multilevel plan; 0 for plain Monte Carlo.
         frames: number of snapshots to keep on the way.
         homogeneous: take the mean strength everywhere.
+        threads: that share every step, at least 1; None for the cores where the scene is large, else 1. Results depend
+            on the number by rounding; an ensemble has one for each realisation.
 
     Returns:
         The outcome: quantities, status, final points, histories and snapshots.
@@ -88,7 +98,8 @@ def simulate(study: Any, index: int = 0, *, level: int = 0, frames: int = 0, hom
     from rfmpm.study import load_study
 
     prepared = realisation.prepare(load_study(study))
-    return realisation.simulate(prepared, index, level=level, frames=frames, homogeneous=homogeneous)
+    threads = threads or realisation.threads_for(prepared)
+    return realisation.simulate(prepared, index, level=level, frames=frames, homogeneous=homogeneous, threads=threads)
 
 
 def run_ensemble(

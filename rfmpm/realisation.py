@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from rfmpm import seeds
+from rfmpm.kernel_tools import start_threads
 from rfmpm.mpm import scene as scenes
 from rfmpm.mpm.energy import elastic_energy, energy_shares
 from rfmpm.mpm.solvers import SOLVERS
@@ -17,6 +18,8 @@ from rfmpm.observer import Observer, final_state
 from rfmpm.quantities import QUANTITIES, first_minimum
 from rfmpm.random_fields import field as random_field
 from rfmpm.variables import FAILED, STATUS, active_variables
+
+WORTH_SHARING = 20_000  # points from which threads that share a step gain more than they wait for each other
 
 
 @dataclass(frozen=True)
@@ -65,11 +68,16 @@ def prepare(study, store: Path | None = None) -> Prepared:
     return Prepared(study, scene, prepared)
 
 
-def compile_kernels(prepared: Prepared) -> None:
+def compile_kernels(prepared: Prepared, threads: int = 1) -> None:
     """Compile what the study needs, or load it from the cache, so that no realisation has to."""
     scene = prepared.scene
     advance = SOLVERS[prepared.study.time.scheme]
-    advance(start(), 0.0, *scenes.arguments(scene, scenes.release(scene, None)))
+    advance(start(), 0.0, *scenes.arguments(scene, scenes.release(scene, None), threads))
+
+
+def threads_for(prepared: Prepared) -> int:
+    """How many threads a single realisation is worth: all cores for a large scene, else one."""
+    return start_threads() if len(prepared.scene.points.mass) >= WORTH_SHARING else 1
 
 
 def realise_fields(study, index: int, level: int = 0) -> dict[str, np.ndarray]:
@@ -98,7 +106,7 @@ def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = 
     Returns:
         Every active variable by name; a numerical failure is a status with a reason, and its quantities are NaN.
     """
-    outcome = _simulate(prepared, _fields(prepared, index, level, xi), frames=0)
+    outcome = _simulate(prepared, _fields(prepared, index, level, xi), frames=0, threads=1)
     return outcome.quantities | {
         "realisation": index,
         "level": level,
@@ -109,7 +117,9 @@ def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = 
     }
 
 
-def simulate(prepared: Prepared, index: int = 0, level: int = 0, frames: int = 0, homogeneous: bool = False) -> Outcome:
+def simulate(
+    prepared: Prepared, index: int = 0, level: int = 0, frames: int = 0, homogeneous: bool = False, threads: int = 1
+) -> Outcome:
     """Simulate one realisation and keep its points, histories and, if asked, snapshots.
 
     Args:
@@ -118,12 +128,14 @@ def simulate(prepared: Prepared, index: int = 0, level: int = 0, frames: int = 0
         level: of the plan.
         frames: snapshots, evenly spread over the time up to rest; 0 for none.
         homogeneous: leave the random field out.
+        threads: that share every step; results of more than one differ by rounding from the row of a campaign, which
+            gives each realisation one thread.
 
     Returns:
         The outcome.
     """
-    compile_kernels(prepared)
-    return _simulate(prepared, {} if homogeneous else _fields(prepared, index, level, None), frames)
+    compile_kernels(prepared, threads)
+    return _simulate(prepared, {} if homogeneous else _fields(prepared, index, level, None), frames, threads)
 
 
 def _fields(prepared: Prepared, index: int, level: int, xi: np.ndarray | None) -> dict[str, np.ndarray]:
@@ -138,11 +150,11 @@ def _fields(prepared: Prepared, index: int, level: int, xi: np.ndarray | None) -
     }
 
 
-def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int) -> Outcome:
+def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int, threads: int) -> Outcome:
     started = time.perf_counter()
     study, scene = prepared.study, prepared.scene
     own, now = scenes.release(scene, fields.get("cohesion")), start()
-    advance, arguments = SOLVERS[study.time.scheme], scenes.arguments(scene, own)
+    advance, arguments = SOLVERS[study.time.scheme], scenes.arguments(scene, own, threads)
     observer = Observer(scene, study, own.points, own.history, frames)
     while now.status == RUNNING and now.time < study.time.end_s:
         until = min(observer.next_sample, study.time.end_s)

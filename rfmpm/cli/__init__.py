@@ -123,6 +123,10 @@ def simulate(
     out: OutFolder = None,
     frames: Annotated[int, typer.Option(min=0, metavar="N", help="Snapshots to keep on the way.")] = 0,
     animate: Annotated[bool, typer.Option("--animate", help="Write an animation (60 frames unless given).")] = False,
+    threads: Annotated[
+        int | None,
+        typer.Option(min=1, metavar="N", help="That share every step; default: the cores for a large scene, else 1."),
+    ] = None,
 ) -> None:
     """Simulate one realisation: snapshots, picture, animation."""
     from rfmpm.study import load_study
@@ -134,7 +138,8 @@ def simulate(
 
     frames = frames or (FRAMES_OF_AN_ANIMATION if animate else 0)
     prepared = realisation.prepare(settings)
-    outcome = realisation.simulate(prepared, index, frames=frames, homogeneous=homogeneous)
+    threads = threads or realisation.threads_for(prepared)
+    outcome = realisation.simulate(prepared, index, frames=frames, homogeneous=homogeneous, threads=threads)
     written = [folder / "simulation.nc", folder / "simulation.png"]
     results.write_simulation(written[0], outcome, settings)
     report.write_simulation_picture(outcome, settings, written[1])

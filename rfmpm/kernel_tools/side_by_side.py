@@ -4,6 +4,8 @@ Numba's prange does not take records within records. Its threads do: what they a
 arguments, and in place of an array a null pointer with a step of one byte, so that its address is the thread's number.
 """
 
+import os
+
 import numba
 from llvmlite import ir
 from numba.core import cgutils, types
@@ -18,9 +20,10 @@ COUNT = ir.IntType(64)
 def start_threads() -> int:
     """Start the threads, once; they wait for work. Returns how many there are, at most as many as cores.
 
-    A kernel that calls `side_by_side` can neither be compiled nor loaded from the cache before. A process that starts
-    them should not be forked afterwards.
+    A kernel that calls `side_by_side` can neither be compiled nor loaded from the cache before. While they wait they
+    leave their cores to others: threads that wait busily take ten times as long where a core is not free.
     """
+    os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     numba.set_num_threads(numba.config.NUMBA_NUM_THREADS)
     return numba.config.NUMBA_NUM_THREADS
 
@@ -67,14 +70,28 @@ def _share(context, module, callee, types_of_call, record):
     share.linkage = "internal"
     builder = ir.IRBuilder(share.append_basic_block())
     arrays, counts, _, data = share.args
-    first, arguments = builder.ptrtoint(builder.load(arrays), COUNT), builder.load(builder.bitcast(data, record.as_pointer()))
-    values = cgutils.unpack_tuple(builder, arguments, len(types_of_call) - 1)
+    first, arguments = builder.ptrtoint(builder.load(arrays), COUNT), builder.bitcast(data, record.as_pointer())
+    values = cgutils.unpack_tuple(builder, builder.load(arguments), len(types_of_call) - 1)
+    values = [_borrowed(context, builder, *pair) for pair in zip(types_of_call[1:], values, strict=True)]
     function = context.declare_function(module, callee)
     with cgutils.for_range(builder, builder.load(counts)) as loop:
         rank = builder.add(first, loop.index)
         context.call_conv.call_function(builder, function, types.void, types_of_call, [rank, *values])
     builder.ret_void()
     return share
+
+
+def _borrowed(context, builder, kind, value):
+    """The same arrays without counts of references, for which the threads would wait: the caller holds the arrays."""
+    if isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder, value=value)
+        array.meminfo = cgutils.get_null_value(array.meminfo.type)
+        return array._getvalue()
+    if isinstance(kind, types.BaseTuple):
+        for k, inner in enumerate(kind.types):
+            field = builder.extract_value(value, k)
+            value = builder.insert_value(value, _borrowed(context, builder, inner, field), k)
+    return value
 
 
 @overload(side_by_side, **inline_options)

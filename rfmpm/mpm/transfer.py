@@ -6,6 +6,7 @@ Nairn and Hammerquist (2021) for FMPM.
 
 from rfmpm.kernel_tools import BLOCK, gather, kernel, part, scatter
 from rfmpm.mpm.cells import divide, share_dilatation, share_pressure, sum_dilatation, sum_pressure
+from rfmpm.mpm.protocols import weights
 from rfmpm.mpm.stages import (
     accelerate,
     add_momentum,
@@ -22,7 +23,6 @@ from rfmpm.mpm.stages import (
     rotate,
     spread,
 )
-from rfmpm.mpm.protocols import weights
 from rfmpm.mpm.state import X, Y
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from rfmpm.kernel_tools import kernel, part, side_by_side, start_threads, zeros
 from rfmpm.mpm.cells import Cells, divide
 from rfmpm.mpm.nonlocal_softening import convolve_columns, convolve_rows, share_strain, sum_strain, widen
-from rfmpm.mpm.solvers.grid import clear, mix_straining, subtract_second_projection, update_grid
+from rfmpm.mpm.solvers.grid import mix_straining, subtract_second_projection, update_grid
 from rfmpm.mpm.stages import collect, make_tally
 from rfmpm.mpm.transfer import carry_at_once, load_nodes, move_points, project_twice, strain_points, update_velocities
 
@@ -28,7 +28,8 @@ class Team(NamedTuple):
     parts: np.ndarray  # (shares, rows, columns, 4)
     volumes: np.ndarray  # (shares, cells) [m3/m]
     contents: np.ndarray  # (shares, cells): volume times volumetric strain rate, or times pressure
-    boxes: np.ndarray  # (shares, CACHE_LINE) nodes that the points of each touch: columns, rows
+    boxes: np.ndarray  # (shares, CACHE_LINE) first and last column and row of the nodes that the points of each touch
+    ranges: np.ndarray  # (shares, CACHE_LINE) first and last of the cells that they are in
     found: np.ndarray  # (shares, CACHE_LINE) energies and the like
     lost: np.ndarray  # (shares,) point that left the grid, or -1
 
@@ -88,7 +89,15 @@ def make_team(size: int, grid, cells) -> Team:
     nodes = (zeros(size * rows, columns).reshape(size, rows, columns, 4) for _ in range(2))
     own = np.zeros((size, count)), np.zeros((size, count))
     boxes = np.tile(np.array([0, -1] * (CACHE_LINE // 2)), (size, 1))
-    return Team(min(size, start_threads()), *nodes, *own, boxes, np.zeros((size, CACHE_LINE)), np.full(size, -1))
+    return Team(
+        min(size, start_threads()),
+        *nodes,
+        *own,
+        boxes,
+        np.zeros((size, CACHE_LINE), np.int64),
+        np.zeros((size, CACHE_LINE)),
+        np.full(size, -1),
+    )
 
 
 @kernel
@@ -153,48 +162,74 @@ def note_work(rank, tally, team):
 
 @kernel
 def gather_rows(stack, boxes, total, box):
-    """Move what all have added into `total`, for the nodes of a box.
+    """Sum into `total` what all have added, for the nodes of a box; their own is zero afterwards.
 
     Args:
-        stack: shape (shares, rows, columns, 4); zero afterwards.
+        stack: shape (shares, rows, columns, 4).
         boxes: nodes that each share has added to.
         total: shape (rows, columns, 4).
         box: first and last column and row of the nodes to sum.
     """
-    clear(total, box)
-    for rank in range(len(stack)):
-        left, right, low, high = boxes[rank, 0], boxes[rank, 1], boxes[rank, 2], boxes[rank, 3]
-        for row in range(max(low, box[2]), min(high, box[3]) + 1):
-            for column in range(left, right + 1):
-                for lane in range(4):
-                    total[row, column, lane] += stack[rank, row, column, lane]
-                    stack[rank, row, column, lane] = 0.0
+    left, right = box[0], box[1] + 1
+    for row in range(box[2], box[3] + 1):
+        is_new = True
+        for rank in range(len(stack)):
+            first, end = boxes[rank, 0], boxes[rank, 1] + 1
+            if boxes[rank, 2] <= row <= boxes[rank, 3]:
+                if is_new:
+                    total[row, left:first] = 0.0
+                    total[row, end:right] = 0.0
+                take(stack[rank, row, first:end].reshape(-1), total[row, first:end].reshape(-1), is_new)
+                is_new = False
+        if is_new:
+            total[row, left:right] = 0.0
 
 
 @kernel
-def gather_cells(stack, total, rank):
-    """Move what all have added to one share of the cells into `total`; returns that share. `stack` is zero afterwards."""
-    first, end = share_of(total.size, rank, len(stack))
+def take(own, total, is_new):
+    """Move numbers to what they replace or are added to."""
+    if is_new:
+        for k in range(own.size):
+            total[k] = own[k]
+            own[k] = 0.0
+    else:
+        for k in range(own.size):
+            total[k] += own[k]
+            own[k] = 0.0
+
+
+@kernel
+def gather_cells(stack, ranges, total, rank):
+    """Sum into `total` what all have added to one share of the cells; their own is zero afterwards.
+
+    `ranges`: first and last cell that each share of the points has added to. Returns first and one after the last of
+    the share of the cells.
+    """
+    lowest = ranges[:, 0].min()
+    first, end = share_of(ranges[:, 1].max() + 1 - lowest, rank, len(stack))
+    first, end = lowest + first, lowest + end
     total[first:end] = 0.0
     for other in range(len(stack)):
-        for cell in range(first, end):
-            total[cell] += stack[other, cell]
-            stack[other, cell] = 0.0
+        low, high = max(first, ranges[other, 0]), min(end, ranges[other, 1] + 1)
+        take(stack[other, low:high], total[low:high], False)
     return first, end
 
 
 @kernel
 def update_rows(rank, grid, walls, box, gravity, damping, dt, share, team):
+    """Momentum equation on one share of the rows."""
     update_grid(grid, walls, own_rows(box, rank, team), gravity, damping, dt, share)
 
 
 @kernel
 def project_some(rank, points, axes, grid, team):
+    """Second projection of one share of the points."""
     project_twice(own_part(points, points, rank, team), axes, grid, team.values[rank])
 
 
 @kernel
 def filter_rows(rank, grid, box, team):
+    """Filtered velocity on one share of the rows."""
     own = own_rows(box, rank, team)
     gather_rows(team.values, team.boxes, grid.filtered, own)
     subtract_second_projection(grid, own)
@@ -202,11 +237,13 @@ def filter_rows(rank, grid, box, team):
 
 @kernel
 def update_some(rank, points, axes, grid, filtered, blend, team):
+    """Velocities and momentum of one share of the points."""
     update_velocities(own_part(points, points, rank, team), axes, grid, filtered, blend, team.values[rank])
 
 
 @kernel
 def mix_rows(rank, grid, box, own_share, team):
+    """Straining velocity on one share of the rows, and the work of its walls."""
     own = own_rows(box, rank, team)
     gather_rows(team.values, team.boxes, grid.straining, own)
     team.found[rank, FRICTION] = mix_straining(grid, own, own_share)
@@ -214,6 +251,7 @@ def mix_rows(rank, grid, box, own_share, team):
 
 @kernel
 def carry_some(rank, points, law, history, axes, grid, dt, team):
+    """Motion, stress and load of one share of the points."""
     tally = make_tally()
     own, own_law, own_history = (
         own_part(points, points, rank, team), own_part(law, points, rank, team), own_part(history, points, rank, team),
@@ -229,6 +267,7 @@ def carry_some(rank, points, law, history, axes, grid, dt, team):
 
 @kernel
 def move_some(rank, points, axes, grid, cells, dt, team):
+    """Motion of one share of the points."""
     tally = make_tally()
     own, own_cells = own_part(points, points, rank, team), cells_of(cells, points, rank, team)
     lost = move_points(own, axes, grid.straining, own_cells, team.contents[rank], dt, tally)
@@ -238,36 +277,42 @@ def move_some(rank, points, axes, grid, cells, dt, team):
 
 @kernel
 def mean_dilatation(rank, cells, team):
-    first, end = gather_cells(team.contents, cells.dilatation, rank)
+    """Mean volumetric strain rate of one share of the cells."""
+    first, end = gather_cells(team.contents, team.ranges, cells.dilatation, rank)
     divide(cells.dilatation[first:end], cells.volume[first:end])
 
 
 @kernel
 def strain_some(rank, points, law, history, axes, cells, dt, team):
+    """Stress of one share of the points."""
     tally = make_tally()
     own, own_law, own_history = (
         own_part(points, points, rank, team), own_part(law, points, rank, team), own_part(history, points, rank, team),
     )  # fmt: skip
     own_cells = cells_of(cells, points, rank, team)
     strain_points(own, own_law, own_history, axes, own_cells, team.volumes[rank], team.contents[rank], dt, tally)
+    team.ranges[rank, 0], team.ranges[rank, 1] = own_cells.of.min(), own_cells.of.max()
     note_work(rank, tally, team)
 
 
 @kernel
 def mean_pressure(rank, cells, team):
-    gather_cells(team.volumes, cells.volume, rank)
-    first, end = gather_cells(team.contents, cells.pressure, rank)
+    """Volume and mean pressure of one share of the cells."""
+    gather_cells(team.volumes, team.ranges, cells.volume, rank)
+    first, end = gather_cells(team.contents, team.ranges, cells.pressure, rank)
     divide(cells.pressure[first:end], cells.volume[first:end])
 
 
 @kernel
 def load_some(rank, points, axes, cells, team):
+    """Load by one share of the points."""
     own, own_cells = own_part(points, points, rank, team), cells_of(cells, points, rank, team)
     put_box(team, rank, load_nodes(own, axes, own_cells, team.parts[rank], team.values[rank]))
 
 
 @kernel
 def collect_rows(rank, grid, axes, box, team):
+    """Mass, momentum and force on one share of the rows."""
     own = own_rows(box, rank, team)
     gather_rows(team.parts, team.boxes, grid.parts, own)
     gather_rows(team.values, team.boxes, grid.sums, own)
@@ -276,12 +321,14 @@ def collect_rows(rank, grid, axes, box, team):
 
 @kernel
 def sum_some(rank, points, history, axes, team):
+    """Plastic strain that one share of the points brings to the nodes."""
     own, own_history = own_part(points, points, rank, team), own_part(history, points, rank, team)
     sum_strain(own, own_history, axes, team.values[rank])
 
 
 @kernel
 def average_along_rows(rank, averaging, box, team):
+    """Average along one share of the rows."""
     own, wide = own_rows(box, rank, team), widen(averaging, box)
     gather_rows(team.values, team.boxes, averaging.sums, (wide[0], wide[1], own[2], own[3]))
     convolve_rows(averaging, box, own)
@@ -289,10 +336,12 @@ def average_along_rows(rank, averaging, box, team):
 
 @kernel
 def average_along_columns(rank, averaging, box, team):
+    """Average along the columns, for one share of the rows."""
     convolve_columns(averaging, box, own_rows(box, rank, team))
 
 
 @kernel
 def share_some(rank, points, history, axes, averaging, team):
+    """Softening strain of one share of the points."""
     own, own_history = own_part(points, points, rank, team), own_part(history, points, rank, team)
     share_strain(own, own_history, axes, averaging)
