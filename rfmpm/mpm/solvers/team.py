@@ -88,16 +88,9 @@ def make_team(size: int, grid, cells) -> Team:
     count = 0 if cells is None else cells.volume.size
     nodes = (zeros(size * rows, columns).reshape(size, rows, columns, 4) for _ in range(2))
     own = np.zeros((size, count)), np.zeros((size, count))
-    boxes = np.tile(np.array([0, -1] * (CACHE_LINE // 2)), (size, 1))
-    return Team(
-        min(size, start_threads()),
-        *nodes,
-        *own,
-        boxes,
-        np.zeros((size, CACHE_LINE), np.int64),
-        np.zeros((size, CACHE_LINE)),
-        np.full(size, -1),
-    )
+    boxes, ranges = (np.zeros((size, CACHE_LINE), np.int64) for _ in range(2))
+    found, lost = np.zeros((size, CACHE_LINE)), np.full(size, -1)
+    return Team(min(size, start_threads()), *nodes, *own, boxes, ranges, found, lost)
 
 
 @kernel
