@@ -92,13 +92,13 @@ def simulate(
         The outcome: quantities, status, final points, histories and snapshots.
 
     Raises:
-        StudyError: with everything that is wrong with the study.
+        StudyError: with everything that is wrong with the study, or if there are no threads or more than points.
     """
     from rfmpm import realisation
     from rfmpm.study import load_study
 
     prepared = realisation.prepare(load_study(study))
-    threads = threads or realisation.threads_for(prepared)
+    threads = realisation.threads_for(prepared) if threads is None else threads
     return realisation.simulate(prepared, index, level=level, frames=frames, homogeneous=homogeneous, threads=threads)
 
 

@@ -17,6 +17,7 @@ from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNI
 from rfmpm.observer import Observer, final_state
 from rfmpm.quantities import QUANTITIES, first_minimum
 from rfmpm.random_fields import field as random_field
+from rfmpm.study import StudyError
 from rfmpm.variables import FAILED, STATUS, active_variables
 
 WORTH_SHARING = 20_000  # points from which threads that share a step gain more than they wait for each other
@@ -133,7 +134,13 @@ def simulate(
 
     Returns:
         The outcome.
+
+    Raises:
+        StudyError: if there are no threads, or more than points.
     """
+    most = len(prepared.scene.points.mass)
+    if not 1 <= threads <= most:
+        raise StudyError([f"threads = {threads}: must be between 1 and {most}, the number of points"])
     compile_kernels(prepared, threads)
     return _simulate(prepared, {} if homogeneous else _fields(prepared, index, level, None), frames, threads)
 

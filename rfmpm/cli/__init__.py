@@ -138,7 +138,7 @@ def simulate(
 
     frames = frames or (FRAMES_OF_AN_ANIMATION if animate else 0)
     prepared = realisation.prepare(settings)
-    threads = threads or realisation.threads_for(prepared)
+    threads = realisation.threads_for(prepared) if threads is None else threads
     outcome = realisation.simulate(prepared, index, frames=frames, homogeneous=homogeneous, threads=threads)
     written = [folder / "simulation.nc", folder / "simulation.png"]
     results.write_simulation(written[0], outcome, settings)
