@@ -15,6 +15,8 @@ from rfmpm.mpm.solvers import SOLVERS, Alone
 from rfmpm.mpm.state import LEFT_GRID, RUNNING, start
 from rfmpm.study import StudyError
 
+pytestmark = pytest.mark.timeout(900)  # the first test of a scene compiles two engines
+
 SLOPE = rfmpm.load_study(Path(__file__).parents[3] / "configs" / "short_slope.toml").with_changes(
     {"discretisation.cell_m": 0.5, "geometry.foreland_m": 5.0, "material.0.cohesion_kpa": 10.0, "time.end_s": 1.5}
 )
