@@ -105,6 +105,7 @@ def simulate(
     frames: int = 0,
     homogeneous: bool = False,
     xi: "np.ndarray | None" = None,
+    threads: int | None = None,
 ) -> "Outcome":
     """Simulate one realisation.
 
@@ -115,19 +116,24 @@ def simulate(
         frames: number of snapshots to keep on the way.
         homogeneous: take the mean strength everywhere.
         xi: standard-normal vector in place of the one that `draw_xi` draws, as for `realise_fields`.
+        threads: that share every step, at least 1; None for the cores where the scene is large, else 1. Results depend
+            on the number by rounding; an ensemble has one for each realisation.
 
     Returns:
         The outcome: quantities, status, final points, histories and snapshots.
 
     Raises:
-        StudyError: with everything that is wrong with the study.
+        StudyError: with everything that is wrong with the study, or if there are no threads or more than points.
         ValueError: `xi` has another length than the study's fields take.
     """
     from rfmpm import realisation
     from rfmpm.study import load_study
 
     prepared = realisation.prepare(load_study(study))
-    return realisation.simulate(prepared, index, level=level, frames=frames, homogeneous=homogeneous, xi=xi)
+    threads = realisation.threads_for(prepared) if threads is None else threads
+    return realisation.simulate(
+        prepared, index, level=level, frames=frames, homogeneous=homogeneous, xi=xi, threads=threads
+    )
 
 
 def run_ensemble(

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from rfmpm import seeds
+from rfmpm.kernel_tools import start_threads
 from rfmpm.mpm import scene as scenes
 from rfmpm.mpm.energy import elastic_energy, energy_shares
 from rfmpm.mpm.solvers import SOLVERS
@@ -18,6 +19,8 @@ from rfmpm.quantities import QUANTITIES, first_minimum
 from rfmpm.random_fields import properties as random_properties
 from rfmpm.study import StudyError
 from rfmpm.variables import FAILED, STATUS, active_variables
+
+WORTH_SHARING = 20_000  # points from which threads that share a step gain more than they wait for each other
 
 
 @dataclass(frozen=True)
@@ -70,11 +73,17 @@ def prepare(study, store: Path | None = None) -> Prepared:
     return Prepared(study, scene, properties)
 
 
-def compile_kernels(prepared: Prepared) -> None:
+def compile_kernels(prepared: Prepared, threads: int = 1) -> None:
     """Compile what the study needs, or load it from the cache, so that no realisation has to."""
     scene = prepared.scene
     advance = SOLVERS[prepared.study.time.scheme]
-    advance(start(), 0.0, *scenes.arguments(scene, scenes.release(scene, typical_strengths(prepared))))
+    own = scenes.release(scene, typical_strengths(prepared))
+    advance(start(), 0.0, *scenes.arguments(scene, own, threads))
+
+
+def threads_for(prepared: Prepared) -> int:
+    """How many threads a single realisation is worth: all cores for a large scene, else one."""
+    return start_threads() if len(prepared.scene.points.mass) >= WORTH_SHARING else 1
 
 
 def typical_strengths(prepared: Prepared) -> dict[str, np.ndarray]:
@@ -117,7 +126,7 @@ def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = 
     Returns:
         Every active variable by name; a numerical failure is a status with a reason, and its quantities are NaN.
     """
-    outcome = _simulate(prepared, _fields(prepared, index, level, xi), frames=0)
+    outcome = _simulate(prepared, _fields(prepared, index, level, xi), frames=0, threads=1)
     return outcome.quantities | {
         "realisation": index,
         "level": level,
@@ -135,6 +144,7 @@ def simulate(
     frames: int = 0,
     homogeneous: bool = False,
     xi: np.ndarray | None = None,
+    threads: int = 1,
 ) -> Outcome:
     """Simulate one realisation and keep its points, histories and, if asked, snapshots.
 
@@ -145,15 +155,23 @@ def simulate(
         frames: snapshots, evenly spread over the time up to rest; 0 for none.
         homogeneous: leave the random fields out.
         xi: as for `run`.
+        threads: that share every step; results of more than one differ by rounding from the row of a campaign, which
+            gives each realisation one thread.
 
     Returns:
         The outcome.
+
+    Raises:
+        StudyError: if there are no threads, or more than points.
     """
+    most = len(prepared.scene.points.mass)
+    if not 1 <= threads <= most:
+        raise StudyError([f"threads = {threads}: must be between 1 and {most}, the number of points"])
     if homogeneous:
         prepared = replace(prepared, properties=random_properties.Properties({}, None))
         xi = None
-    compile_kernels(prepared)
-    return _simulate(prepared, _fields(prepared, index, level, xi), frames)
+    compile_kernels(prepared, threads)
+    return _simulate(prepared, _fields(prepared, index, level, xi), frames, threads)
 
 
 def _fields(prepared: Prepared, index: int, level: int, xi: np.ndarray | None) -> dict[str, np.ndarray]:
@@ -173,11 +191,11 @@ def _site(study, scene: scenes.Scene) -> random_properties.Site:
     )
 
 
-def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int) -> Outcome:
+def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int, threads: int) -> Outcome:
     started = time.perf_counter()
     study, scene = prepared.study, prepared.scene
     own, now = scenes.release(scene, fields), start()
-    advance, arguments = SOLVERS[study.time.scheme], scenes.arguments(scene, own)
+    advance, arguments = SOLVERS[study.time.scheme], scenes.arguments(scene, own, threads)
     observer = Observer(scene, study, own.points, own.history, frames)
     while now.status == RUNNING and now.time < study.time.end_s:
         until = min(observer.next_sample, study.time.end_s)

@@ -128,6 +128,10 @@ def simulate(
     xi: Annotated[
         Path | None, typer.Option("--xi", metavar="FILE", help="Random vector from a file of field --write-xi.")
     ] = None,
+    threads: Annotated[
+        int | None,
+        typer.Option(min=1, metavar="N", help="That share every step; default: the cores for a large scene, else 1."),
+    ] = None,
 ) -> None:
     """Simulate one realisation: snapshots, picture, animation."""
     from rfmpm.study import load_study
@@ -142,7 +146,8 @@ def simulate(
     frames = frames or (FRAMES_OF_AN_ANIMATION if animate else 0)
     prepared = realisation.prepare(settings)
     vector = None if xi is None else _read_xi(xi, prepared)
-    outcome = realisation.simulate(prepared, index, frames=frames, homogeneous=homogeneous, xi=vector)
+    threads = realisation.threads_for(prepared) if threads is None else threads
+    outcome = realisation.simulate(prepared, index, frames=frames, homogeneous=homogeneous, xi=vector, threads=threads)
     written = [folder / "simulation.nc", folder / "simulation.png"]
     results.write_simulation(written[0], outcome, settings)
     report.write_simulation_picture(outcome, settings, written[1])

@@ -3,6 +3,7 @@
 from rfmpm.kernel_tools.jit import at, cache_folder, generic, inlined, kernel, part, put
 from rfmpm.kernel_tools.lanes import lanes, put_lanes
 from rfmpm.kernel_tools.nodes import gather, gather_slopes, scatter, scatter_rows, scatter_slopes, zeros
+from rfmpm.kernel_tools.side_by_side import side_by_side, start_threads
 from rfmpm.kernel_tools.stencil import BLOCK, Stencil, make_stencil, put_stencil
 from rfmpm.kernel_tools.tensors import Tensor, Vector
 
@@ -27,5 +28,7 @@ __all__ = [
     "scatter",
     "scatter_rows",
     "scatter_slopes",
+    "side_by_side",
+    "start_threads",
     "zeros",
 ]

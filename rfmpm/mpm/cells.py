@@ -35,18 +35,18 @@ def make_cells(count: int, axes) -> Cells:
 
 
 @kernel
-def sum_dilatation(points, cells, of, gradient):
-    """Add volume times volumetric strain rate of a block's points to their cells.
+def sum_dilatation(points, sums, of, gradient):
+    """Add volume times volumetric strain rate of a block's points to the sums of their cells.
 
     Points of one cell mostly follow each other: their sum is kept until the cell changes.
     """
     cell, total = of[0], 0.0
     for p in range(of.size):
         if of[p] != cell:
-            cells.dilatation[cell] += total
+            sums[cell] += total
             cell, total = of[p], 0.0
         total += points.volume[p] * (gradient[4 * p + XX] + gradient[4 * p + YY])
-    cells.dilatation[cell] += total
+    sums[cell] += total
 
 
 @kernel
@@ -59,21 +59,21 @@ def share_dilatation(cells, of, gradient):
 
 
 @kernel
-def sum_pressure(points, axes, cells, of):
-    """Find the cells of a block's points anew and add volume, and volume times in-plane mean stress, to them."""
+def sum_pressure(points, axes, volumes, sums, of):
+    """Find the cells of a block's points anew and add volume, and volume times in-plane mean stress, to their sums."""
     x, y, pitch = points.position.x, points.position.y, axes.x.cells + 1
     for p in range(of.size):
         of[p] = np.int32(y[p] * axes.y.inverse_cell) * pitch + np.int32(x[p] * axes.x.inverse_cell)
     cell, volume, total = of[0], 0.0, 0.0
     for p in range(of.size):
         if of[p] != cell:
-            cells.volume[cell] += volume
-            cells.pressure[cell] += total
+            volumes[cell] += volume
+            sums[cell] += total
             cell, volume, total = of[p], 0.0, 0.0
         volume += points.volume[p]
         total += points.volume[p] * 0.5 * (points.stress.xx[p] + points.stress.yy[p])
-    cells.volume[cell] += volume
-    cells.pressure[cell] += total
+    volumes[cell] += volume
+    sums[cell] += total
 
 
 @kernel

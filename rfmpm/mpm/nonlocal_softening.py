@@ -62,12 +62,26 @@ def shape_variance(axis) -> float:
 @kernel
 def average_softening(points, history, axes, averaging, box):
     """Renew the softening strain of every point: the largest over-nonlocal average of the plastic strain so far."""
-    sums, spread, taps = averaging.sums, averaging.spread, averaging.taps
-    radius = len(taps) // 2
-    rows, columns, _ = sums.shape
-    first_column, last_column = max(box[0] - radius, 0), min(box[1] + radius, columns - 1)
-    first_row, last_row = max(box[2] - radius, 0), min(box[3] + radius, rows - 1)
-    sums[first_row : last_row + 1, first_column : last_column + 1] = 0.0
+    wide = widen(averaging, box)
+    averaging.sums[wide[2] : wide[3] + 1, wide[0] : wide[1] + 1] = 0.0
+    sum_strain(points, history, axes, averaging.sums)
+    convolve_rows(averaging, box, box)
+    convolve_columns(averaging, box, box)
+    share_strain(points, history, axes, averaging)
+
+
+@kernel
+def widen(averaging, box):
+    """The box of nodes that the Gaussian reaches from those of a box."""
+    rows, columns, _ = averaging.sums.shape
+    radius = len(averaging.taps) // 2
+    across = max(box[0] - radius, 0), min(box[1] + radius, columns - 1)
+    return across[0], across[1], max(box[2] - radius, 0), min(box[3] + radius, rows - 1)
+
+
+@kernel
+def sum_strain(points, history, axes, sums):
+    """Add volume, and volume times plastic strain, to the nodes of `sums`."""
     scratch = make_scratch(axes)
     for first in range(0, points.mass.size, BLOCK):
         block, last = locate_block(points, axes, scratch, first)
@@ -75,15 +89,31 @@ def average_softening(points, history, axes, averaging, box):
             volume = block.volume[p]
             amount = volume, volume * history.plastic_strain[first + p], 0.0, 0.0
             scatter(sums, scratch.x, scratch.y, p, amount)
-    for row in range(box[2], box[3] + 1):
-        convolve_row(sums[row], spread[row], taps, first_column, last_column)
-    for row in range(box[2], box[3] + 1):
-        convolve_column(spread, sums, taps, row, box)
-    m = averaging.overshoot
+
+
+@kernel
+def convolve_rows(averaging, box, own):
+    """Average along the rows of the box `own`, part of the touched ones."""
+    wide = widen(averaging, box)
+    for row in range(own[2], own[3] + 1):
+        convolve_row(averaging.sums[row], averaging.spread[row], averaging.taps, wide[0], wide[1])
+
+
+@kernel
+def convolve_columns(averaging, box, own):
+    """Average along the columns, for the rows of the box `own`."""
+    for row in range(own[2], own[3] + 1):
+        convolve_column(averaging.spread, averaging.sums, averaging.taps, row, box)
+
+
+@kernel
+def share_strain(points, history, axes, averaging):
+    """Let the points soften by the average around them."""
+    scratch, m = make_scratch(axes), averaging.overshoot
     for first in range(0, points.mass.size, BLOCK):
         _, last = locate_block(points, axes, scratch, first)
         for p in range(first, last):
-            around = gather(sums, scratch.x, scratch.y, p - first)
+            around = gather(averaging.sums, scratch.x, scratch.y, p - first)
             mixed = (1.0 - m) * history.plastic_strain[p] + m * around[1] / around[0]
             history.averaged_strain[p] = max(history.averaged_strain[p], mixed)
 

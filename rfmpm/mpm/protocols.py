@@ -32,6 +32,25 @@ class ShapeFunction(Protocol):
         """Return first node, weights [-] and slopes [1/m] at coordinate x [m]."""
 
 
+class Passes(Protocol):
+    """How the passes of a step over points and nodes are taken: by one thread, or shared by several."""
+
+    def update_nodes(self, grid, walls, box, gravity, damping, dt, share):
+        """Solve the momentum equation on the touched nodes."""
+
+    def filter_nodes(self, points, axes, grid, box):
+        """Make the filtered velocity of the touched nodes, in `grid.filtered`."""
+
+    def update_points(self, points, axes, grid, filtered, blend, box, own_share):
+        """Update the points' velocities and map them to `grid.straining`. Returns the work that walls take [J/m]."""
+
+    def carry(self, points, law, history, axes, grid, cells, box, dt):
+        """Move and strain the points and take them to the grid. Returns what `carry_points` does."""
+
+    def average(self, points, history, axes, averaging, box):
+        """Renew the softening strain of every point."""
+
+
 class Wall(Protocol):
     """What a wall does to a node that lies on it."""
 
@@ -49,3 +68,8 @@ local_share = generic(SofteningHistory.local_share)
 grown = generic(SofteningHistory.grown)
 weights = generic(ShapeFunction.weights)
 constrain = generic(Wall.constrain)
+update_nodes = generic(Passes.update_nodes)
+filter_nodes = generic(Passes.filter_nodes)
+update_points = generic(Passes.update_points)
+carry = generic(Passes.carry)
+average = generic(Passes.average)

@@ -18,7 +18,7 @@ from rfmpm.mpm.laws.elastic import lame_constants
 from rfmpm.mpm.laws.history import NonlocalHistory
 from rfmpm.mpm.nonlocal_softening import Averaging, averaging
 from rfmpm.mpm.shapes import build_axis
-from rfmpm.mpm.solvers import Controls
+from rfmpm.mpm.solvers import Alone, Controls, make_team
 from rfmpm.mpm.state import Axes, Grid, Points, copy_points
 
 GRAVITY = 9.81  # [m/s2]
@@ -118,18 +118,21 @@ def release(scene: Scene, strengths: Mapping[str, np.ndarray] | None) -> Release
     return Released(copy_points(scene.points), law, history, empty_grid(scene.axes), cells, means)
 
 
-def arguments(scene: Scene, own: Released) -> tuple:
+def arguments(scene: Scene, own: Released, threads: int = 1) -> tuple:
     """What a solver's `advance` takes after progress and time.
 
     Args:
         scene: the scene.
         own: what `release` made; the solver changes it.
+        threads: that share every step.
 
     Returns:
         The arguments, in order.
     """
+    passes = Alone() if threads == 1 else make_team(threads, own.grid, own.cells)
     return (
         own.points, own.law, own.history, scene.axes, own.grid, own.cells, own.averaging, scene.walls, scene.controls,
+        passes,
     )  # fmt: skip
 
 

@@ -180,14 +180,14 @@ def load(points, pressure, scratch):
 
 
 @kernel
-def spread(mass, scratch, grid):
+def spread(mass, scratch, parts, sums):
     """Point to grid: add mass, momentum m v and internal force -V sigma grad w to the nodes."""
     for p in range(mass.size):
         carried, along_x = lanes(scratch.motion, p), lanes(scratch.gradient, p)
         momentum = carried[X], carried[Y], 0.0, 0.0
         along_y = 0.0, 0.0, carried[FORCE_X], carried[FORCE_Y]
-        scatter_rows(grid.parts, scratch.x, scratch.y, p, mass[p])
-        scatter_slopes(grid.sums, scratch.x, scratch.y, p, momentum, along_x, along_y)
+        scatter_rows(parts, scratch.x, scratch.y, p, mass[p])
+        scatter_slopes(sums, scratch.x, scratch.y, p, momentum, along_x, along_y)
 
 
 @kernel
@@ -211,9 +211,9 @@ def add_momentum(mass, velocity, scratch, values):
 
 
 @kernel
-def collect(parts, mass, box, width):
-    """Sum the masses that rows of `width` nodes brought, which lie in lanes of their first node, into each node's."""
-    left, right, low, high = box
+def collect(parts, mass, box, axes):
+    """Sum the masses that rows of nodes brought, which lie in lanes of their first node, into each node's."""
+    (left, right, low, high), width = box, len(weights(axes.x, 0.0)[1])
     for j in range(low, high + 1):
         for i in range(left, right + 1):
             mass[j, i] = parts[j, i, 0]

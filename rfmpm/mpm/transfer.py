@@ -6,6 +6,7 @@ Nairn and Hammerquist (2021) for FMPM.
 
 from rfmpm.kernel_tools import BLOCK, gather, kernel, part, scatter
 from rfmpm.mpm.cells import divide, share_dilatation, share_pressure, sum_dilatation, sum_pressure
+from rfmpm.mpm.protocols import weights
 from rfmpm.mpm.stages import (
     accelerate,
     add_momentum,
@@ -26,8 +27,8 @@ from rfmpm.mpm.state import X, Y
 
 
 @kernel
-def update_velocities(points, axes, grid, filtered, blend):
-    """Update the points' velocities and add their momentum to `grid.straining`, which must be zero.
+def update_velocities(points, axes, grid, filtered, blend, straining):
+    """Update the points' velocities and add their momentum to the nodes of `straining`.
 
     `filtered`, where given, is the velocity towards which a fraction `blend` of the point's velocity goes (FMPM).
     """
@@ -41,7 +42,7 @@ def update_velocities(points, axes, grid, filtered, blend):
             accelerate(block.velocity, scratch.motion, scratch.smooth, blend)
         else:
             accelerate(block.velocity, scratch.motion, None, blend)
-        add_momentum(block.mass, block.velocity, scratch, grid.straining)
+        add_momentum(block.mass, block.velocity, scratch, straining)
 
 
 @kernel
@@ -56,52 +57,87 @@ def carry_points(points, law, history, axes, grid, cells, dt):
     Returns (kinetic energy [J/m], sum of mass times fall [kg m/m], work of stress and its plastic part [J/m], largest
     squared speed, box of nodes touched, index of a point that left the grid or -1).
     """
-    box = grid.mass.shape[1], 0, grid.mass.shape[0], 0
-    scratch, tally, lost, count = make_scratch(axes), make_tally(), -1, points.mass.size
+    tally, box = make_tally(), (0, -1, 0, -1)
     if cells is None:
-        for first in range(0, count, BLOCK):
-            last = min(first + BLOCK, count)
-            block = part(points, first, last)
-            if grid_to_points(block, axes, grid, scratch, scratch.gradient, dt, tally):
-                lost = first + first_outside(block, axes)
-                break
-            strain(block, part(law, first, last), part(history, first, last), scratch.gradient, dt, tally)
-            box = points_to_grid(block, None, axes, grid, scratch, box)
+        lost, box = carry_at_once(points, law, history, axes, grid.straining, grid.parts, grid.sums, dt, tally)
     else:
-        lost, box = carry_by_cells(points, law, history, axes, grid, cells, dt, scratch, tally, box)
-    width = len(scratch.x.like)
-    box = box[0], box[1] + width - 1, box[2], box[3] + len(scratch.y.like) - 1
-    collect(grid.parts, grid.mass, box, width)
+        cells.dilatation[:] = 0.0
+        lost = move_points(points, axes, grid.straining, cells, cells.dilatation, dt, tally)
+        if lost < 0:
+            divide(cells.dilatation, cells.volume)
+            cells.volume[:] = 0.0
+            cells.pressure[:] = 0.0
+            strain_points(points, law, history, axes, cells, cells.volume, cells.pressure, dt, tally)
+            divide(cells.pressure, cells.volume)
+            box = load_nodes(points, axes, cells, grid.parts, grid.sums)
+    collect(grid.parts, grid.mass, box, axes)
     return tally.kinetic.sum(), tally.fall.sum(), tally.work.sum(), tally.plastic.sum(), tally.fastest.max(), box, lost
 
 
 @kernel
-def carry_by_cells(points, law, history, axes, grid, cells, dt, scratch, tally, box):
-    """The same with means over the points of each cell. Returns the point that left the grid or -1, and the box."""
-    count = points.mass.size
-    cells.dilatation[:] = 0.0
-    for first in range(0, count, BLOCK):
-        last = min(first + BLOCK, count)
-        block, gradient = part(points, first, last), cells.gradient[4 * first : 4 * last]
-        if grid_to_points(block, axes, grid, scratch, gradient, dt, tally):
+def carry_at_once(points, law, history, axes, straining, parts, sums, dt, tally):
+    """Move, strain and load in one pass. Returns the point that left the grid or -1, and the box of nodes touched."""
+    scratch, box = make_scratch(axes), no_nodes(axes)
+    for first in range(0, points.mass.size, BLOCK):
+        last = min(first + BLOCK, points.mass.size)
+        block = part(points, first, last)
+        if grid_to_points(block, axes, straining, scratch, scratch.gradient, dt, tally):
             return first + first_outside(block, axes), box
-        sum_dilatation(block, cells, cells.of[first:last], gradient)
-    divide(cells.dilatation, cells.volume)
-    cells.volume[:] = 0.0
-    cells.pressure[:] = 0.0
-    for first in range(0, count, BLOCK):
-        last = min(first + BLOCK, count)
+        strain(block, part(law, first, last), part(history, first, last), scratch.gradient, dt, tally)
+        box = points_to_grid(block, None, axes, parts, sums, scratch, box)
+    return -1, whole(box, axes)
+
+
+@kernel
+def move_points(points, axes, straining, cells, sums, dt, tally):
+    """Move the points and add their volumetric strain rates to the `sums` of their cells.
+
+    Returns the point that left the grid or -1.
+    """
+    scratch = make_scratch(axes)
+    for first in range(0, points.mass.size, BLOCK):
+        last = min(first + BLOCK, points.mass.size)
+        block, gradient = part(points, first, last), cells.gradient[4 * first : 4 * last]
+        if grid_to_points(block, axes, straining, scratch, gradient, dt, tally):
+            return first + first_outside(block, axes)
+        sum_dilatation(block, sums, cells.of[first:last], gradient)
+    return -1
+
+
+@kernel
+def strain_points(points, law, history, axes, cells, volumes, sums, dt, tally):
+    """Strain the points with the mean dilatation of their cells, and add volumes and pressures to those they are in."""
+    for first in range(0, points.mass.size, BLOCK):
+        last = min(first + BLOCK, points.mass.size)
         block, gradient = part(points, first, last), cells.gradient[4 * first : 4 * last]
         share_dilatation(cells, cells.of[first:last], gradient)
         strain(block, part(law, first, last), part(history, first, last), gradient, dt, tally)
-        sum_pressure(block, axes, cells, cells.of[first:last])
-    divide(cells.pressure, cells.volume)
-    for first in range(0, count, BLOCK):
-        last = min(first + BLOCK, count)
+        sum_pressure(block, axes, volumes, sums, cells.of[first:last])
+
+
+@kernel
+def load_nodes(points, axes, cells, parts, sums):
+    """Load the nodes by the points, with the mean pressure of their cells. Returns the box of nodes touched."""
+    scratch, box = make_scratch(axes), no_nodes(axes)
+    for first in range(0, points.mass.size, BLOCK):
+        last = min(first + BLOCK, points.mass.size)
         block, change = part(points, first, last), cells.change[first:last]
         share_pressure(block.stress, cells, cells.of[first:last], change)
-        box = points_to_grid(block, change, axes, grid, scratch, box)
-    return -1, box
+        box = points_to_grid(block, change, axes, parts, sums, scratch, box)
+    return whole(box, axes)
+
+
+@kernel
+def no_nodes(axes):
+    """An empty box of first nodes, to be extended."""
+    return axes.x.cells + 1, 0, axes.y.cells + 1, 0
+
+
+@kernel
+def whole(box, axes):
+    """The box of all nodes around points whose first nodes fill a box."""
+    (_, across, _), (_, up, _) = weights(axes.x, 0.0), weights(axes.y, 0.0)
+    return box[0], box[1] + len(across) - 1, box[2], box[3] + len(up) - 1
 
 
 @kernel
@@ -112,10 +148,10 @@ def place(points, axes, scratch):
 
 
 @kernel
-def grid_to_points(points, axes, grid, scratch, gradient, dt, tally):
+def grid_to_points(points, axes, straining, scratch, gradient, dt, tally):
     """Velocity gradient and position of a block. Returns how many points are no longer within the grid."""
     place(points, axes, scratch)
-    interpolate_slopes(grid.straining, scratch, points.mass.size, gradient)
+    interpolate_slopes(straining, scratch, points.mass.size, gradient)
     return move(points, axes, scratch.motion, dt, tally)
 
 
@@ -127,14 +163,14 @@ def strain(points, law, history, gradient, dt, tally):
 
 
 @kernel
-def points_to_grid(points, pressure, axes, grid, scratch, box):
+def points_to_grid(points, pressure, axes, parts, sums, scratch, box):
     """Mass, momentum and internal force of a block at its new positions. Returns the box of first nodes so far.
 
     `pressure`, where given, is added to the points' in-plane mean stress in the force [Pa].
     """
     place(points, axes, scratch)
     load(points, pressure, scratch)
-    spread(points.mass, scratch, grid)
+    spread(points.mass, scratch, parts, sums)
     return extend(box, scratch, points.mass.size)
 
 
@@ -149,8 +185,8 @@ def first_outside(points, axes):
 
 
 @kernel
-def project_twice(points, axes, grid):
-    """Add to `grid.filtered` the momentum of the interpolated grid velocity: sum over points of w m (sum of w v)."""
+def project_twice(points, axes, grid, filtered):
+    """Add to `filtered` the momentum of the interpolated grid velocity: sum over points of w m (sum of w v)."""
     scratch = make_scratch(axes)
     for first in range(0, points.mass.size, BLOCK):
         block = part(points, first, min(first + BLOCK, points.mass.size))
@@ -158,4 +194,4 @@ def project_twice(points, axes, grid):
         for p in range(block.mass.size):
             m = block.mass[p]
             flow = gather(grid.flow, scratch.x, scratch.y, p)
-            scatter(grid.filtered, scratch.x, scratch.y, p, (m * flow[X], m * flow[Y], 0.0, 0.0))
+            scatter(filtered, scratch.x, scratch.y, p, (m * flow[X], m * flow[Y], 0.0, 0.0))

@@ -191,7 +191,7 @@ def simulation(replace):
     def write(path):
         notes.written.append(path)
 
-    replace("realisation", prepare=lambda study: ("prepared", study), simulate=simulate)
+    replace("realisation", prepare=lambda study: ("prepared", study), simulate=simulate, threads_for=lambda prepared: 1)
     replace("results", write_simulation=lambda path, outcome, study: write(path))
     replace(
         "report",
@@ -216,7 +216,20 @@ def test_simulate_prints_quantities_with_units_and_the_paths(simulation, tmp_pat
     assert "model time at which the body came to rest unknown" in lines
     assert lines[-4:-2] == ["steps 12,345", "wall time 8.25 s"]
     assert lines[-2:] == [str(tmp_path / "simulation.nc"), str(tmp_path / "simulation.png")]
-    assert (simulation.index, simulation.options) == (3, {"frames": 0, "homogeneous": False, "xi": None})
+    assert (simulation.index, simulation.options) == (
+        3,
+        {"frames": 0, "homogeneous": False, "xi": None, "threads": 1},
+    )
+
+
+def test_simulate_takes_as_many_threads_as_it_is_told(simulation, tmp_path):
+    call("simulate", RANDOM, "--out", tmp_path, "--threads", 3)
+    assert simulation.options["threads"] == 3
+    assert call("simulate", RANDOM, "--out", tmp_path, "--threads", 0).exit_code == 2
+
+
+def test_a_campaign_has_no_threads_to_share_a_step(tmp_path):
+    assert call("run", RANDOM, "--out", tmp_path, "--threads", 2).exit_code == 2
 
 
 @pytest.mark.parametrize(
@@ -361,13 +374,14 @@ def test_python_functions_take_anything_that_is_a_study(replace, campaign, tmp_p
         "realisation",
         prepare=lambda study: study,
         simulate=lambda prepared, index, **options: (prepared, index, options),
+        threads_for=lambda prepared: 2,
         realise_fields=lambda study, index, level, xi: (study, index, level),
     )
     study = rfmpm.load_study(RANDOM)
     assert rfmpm.simulate(RANDOM, index=2, frames=3) == (
         study,
         2,
-        {"level": 0, "frames": 3, "homogeneous": False, "xi": None},
+        {"level": 0, "frames": 3, "homogeneous": False, "xi": None, "threads": 2},
     )
     assert rfmpm.realise_fields(RANDOM, index=1) == (study, 1, 0)
     rfmpm.run_ensemble(RANDOM, realisations=32, directory=tmp_path, workers=1)

@@ -36,10 +36,11 @@ class Run:
         scene: the scene; its points are copied.
         scheme: how it is solved; its shape is the scene's already.
         body_force: acceleration besides gravity, for the plain solver only.
+        threads: that share every step, for the production engine only.
     """
 
-    def __init__(self, scene: Scene, scheme: Scheme, body_force: Any = None):
-        self.scene, self.body_force = scene, body_force
+    def __init__(self, scene: Scene, scheme: Scheme, body_force: Any = None, threads: int = 1):
+        self.scene, self.body_force, self.threads = scene, body_force, threads
         self.transfer, dissipation_time = TRANSFERS[scheme.transfer]
         self.order = scheme.order
         self.own = scenes.release(scene, None)
@@ -80,7 +81,7 @@ class Run:
         if self.is_plain:
             self._until_plainly(end)
         else:
-            arguments = scenes.arguments(replace(scene, controls=self.controls), self.own)
+            arguments = scenes.arguments(replace(scene, controls=self.controls), self.own, self.threads)
             self.now = SOLVERS["explicit"](self.now, end, *arguments)
 
     def _until_plainly(self, end: float) -> None:

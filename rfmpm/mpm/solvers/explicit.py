@@ -4,10 +4,8 @@ from math import exp, inf
 from typing import NamedTuple
 
 from rfmpm.kernel_tools import kernel
-from rfmpm.mpm.nonlocal_softening import average_softening
-from rfmpm.mpm.solvers.grid import clear, mix_straining, subtract_second_projection, update_grid
+from rfmpm.mpm.protocols import average, carry, filter_nodes, update_nodes, update_points
 from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNING, Progress
-from rfmpm.mpm.transfer import carry_points, project_twice, update_velocities
 
 RESOLVED_SHARE = 0.2  # of the square of the Courant number: a node's share of the mass at a wall that a step resolves
 CALM_FLOW = 1e-4  # share of the energy in play that plastic flow and friction may take in a time that counts as calm
@@ -33,40 +31,33 @@ class Controls(NamedTuple):
 
 
 @kernel
-def step(now, points, law, history, axes, grid, cells, averaging, walls, controls):
+def step(now, points, law, history, axes, grid, cells, averaging, walls, controls, passes):
     """Advance everything by one time step; a first call with no nodes touched only fills the grid.
 
     Returns the new progress.
     """
     box = now.first_column, now.last_column, now.first_row, now.last_row
-    dt, since_filter, blend, filtering = 0.0, 0.0, 0.0, False
+    dt, since_filter, friction = 0.0, 0.0, 0.0
     if now.last_row >= 0:
         dt = controls.courant * controls.cell / (controls.wave_speed + now.fastest)
         settling = controls.settling_rate if now.calm_time >= controls.rest_time else 0.0
         share = RESOLVED_SHARE * controls.courant**2
-        update_grid(grid, walls, box, controls.gravity, settling, dt, share)
+        update_nodes(passes, grid, walls, box, controls.gravity, settling, dt, share)
         rate = 1.0 / controls.dissipation_time + settling
         since_filter = now.since_filter + dt
-        filtering = now.step_count % controls.filter_interval == 0 and rate > 0.0
-        blend = 1.0 - exp(-since_filter * rate)
-    clear(grid.straining, box)
-    if filtering:
-        since_filter = 0.0
-        clear(grid.filtered, box)
-        project_twice(points, axes, grid)
-        subtract_second_projection(grid, box)
-        update_velocities(points, axes, grid, grid.filtered, blend)
-    else:
-        update_velocities(points, axes, grid, None, blend)
-    friction = mix_straining(grid, box, controls.own_share)
-    clear(grid.parts, box)
-    clear(grid.sums, box)
-    moved = carry_points(points, law, history, axes, grid, cells, dt)
+        if now.step_count % controls.filter_interval == 0 and rate > 0.0:
+            blend = 1.0 - exp(-since_filter * rate)
+            since_filter = 0.0
+            filter_nodes(passes, points, axes, grid, box)
+            friction = update_points(passes, points, axes, grid, grid.filtered, blend, box, controls.own_share)
+        else:
+            friction = update_points(passes, points, axes, grid, None, 0.0, box, controls.own_share)
+    moved = carry(passes, points, law, history, axes, grid, cells, box, dt)
     kinetic, fall, work, plastic, fastest, touched, culprit = moved
     since_average = now.since_average + dt
     if averaging is not None:  # noqa: SIM102  (an argument that is None is pruned here, not within a condition)
         if since_average >= controls.average_interval and culprit < 0:
-            average_softening(points, history, axes, averaging, touched)
+            average(passes, points, history, axes, averaging, touched)
             since_average = 0.0
     peak = max(now.peak_kinetic, kinetic)
     quiet = now.quiet_time + dt if kinetic < controls.rest_fraction * peak else 0.0
@@ -115,7 +106,7 @@ def judge(now, points, controls):
 
 
 @kernel
-def advance(now, until, points, law, history, axes, grid, cells, averaging, walls, controls):
+def advance(now, until, points, law, history, axes, grid, cells, averaging, walls, controls, passes):
     """Step until the time is `until` or later, or the run ends.
 
     Args:
@@ -129,10 +120,11 @@ def advance(now, until, points, law, history, axes, grid, cells, averaging, wall
         averaging: how softening is averaged, of this run; None: each point softens by itself.
         walls: what holds the domain's edges.
         controls: numbers of the time integration.
+        passes: who takes the passes over points and nodes; `Alone()`, or a team of threads.
 
     Returns:
         The progress, with its status.
     """
     while now.status == RUNNING and (now.time < until or now.last_row < 0):
-        now = step(now, points, law, history, axes, grid, cells, averaging, walls, controls)
+        now = step(now, points, law, history, axes, grid, cells, averaging, walls, controls, passes)
     return now

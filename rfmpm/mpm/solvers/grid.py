@@ -56,7 +56,9 @@ def update_grid(grid, walls, box, gravity, damping, dt, share):
             if m > 0.0:
                 inverse = 1.0 / m
                 mapped_x, mapped_y = grid.sums[row, column, X] * inverse, grid.sums[row, column, Y] * inverse
-                pace = dt * inertia(grid, row, column, last_column, share)
+                pace = dt
+                if row == 1 or column == 1 or column == last_column - 1:
+                    pace *= inertia(grid, row, column, last_column, share)
                 push_x = pace * grid.sums[row, column, FORCE_X] * inverse
                 push_y = pace * (grid.sums[row, column, FORCE_Y] * inverse - gravity)
                 push_x, push_y = push_x - lost * (mapped_x + push_x), push_y - lost * (mapped_y + push_y)
