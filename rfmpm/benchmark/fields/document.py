@@ -55,9 +55,10 @@ def _section(case: Case, measured: list[Measurement]) -> str:
     for one in measured:
         noise = f" +- {one.noise:.1g}" if one.noise else ""
         numbers = f"{one.numbers:.3g}" if one.numbers else "within"
+        error = f"{one.error:.2g}" if one.error == one.error else ""
         memory = f"{one.memory:.3g}" if one.memory == one.memory else ""
         lines.append(
-            f"| {one.name} | {one.preparing:.3g} | {one.drawing:.3g} | {numbers} | {one.error:.2g}{noise} | {memory} | "
+            f"| {one.name} | {one.preparing:.3g} | {one.drawing:.3g} | {numbers} | {error}{noise} | {memory} | "
             f"{one.remark} |"
         )
     return "\n".join([*lines, "", *_verdicts(case, measured), ""])
@@ -92,6 +93,8 @@ def draw(everything: list[tuple[Case, list[Measurement]]], path: Path) -> None:
         panels = figure.subplots((len(everything) + 1) // 2, 2, squeeze=False).ravel()
         for axes, (case, measured) in zip(panels, everything, strict=False):
             for one in measured:
+                if one.error != one.error:
+                    continue
                 is_peer = one.name in PEERS
                 axes.plot(
                     one.total, max(one.error, 1e-13), marker="s" if is_peer else "o", linestyle="",

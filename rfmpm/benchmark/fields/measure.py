@@ -10,6 +10,7 @@ import numpy as np
 
 from rfmpm.benchmark.fields import peers
 from rfmpm.benchmark.fields.cases import Case
+from rfmpm.random_fields.conditioning import condition, update
 from rfmpm.random_fields.methods import METHODS, covariance_error
 
 LAGS = 8  # per direction: quarters of theta up to two
@@ -45,30 +46,37 @@ def measure(case: Case, quick: bool) -> Iterator[Measurement]:
         yield _method(case, name, options, budget)
     if case.correlation == "markov_ellipsoidal":
         for name in peers.installed():
-            make, needs_lattice = peers.PEERS[name]
-            if not (needs_lattice and case.is_scattered):
-                yield _peer(case, name, make, budget)
+            peer = peers.PEERS[name]
+            if not (peer.needs_lattice and case.is_scattered) and (peer.conditions or not case.data_count):
+                yield _peer(case, name, peer.make, budget)
 
 
 def _method(case: Case, name: str, options: dict, budget: float) -> Measurement:
     method, correlation = METHODS[name], case.kernel
     started = time.process_time()
     record = method.prepare(correlation, case.points, **options)
+    conditioning = condition(correlation, case.points, case.data) if case.data_count else None
     preparing = time.process_time() - started
-    generator, count = np.random.default_rng(0), method.n_variables(record)
+    generator, own = np.random.default_rng(0), method.n_variables(record)
+    count = own + (conditioning.n_variables if conditioning else 0)
+
+    def field(xi: np.ndarray) -> np.ndarray:
+        z = method.transform(record, xi[:own])
+        return update(conditioning, z, xi[own:]) if conditioning else z
+
     xi = generator.standard_normal(count)
-    method.transform(record, xi)  # compiles
-    drawing = _least(lambda: method.transform(record, xi), budget)
+    field(xi)  # compiles
+    drawing = _least(lambda: field(xi), budget)
     numbers = _least(lambda: generator.standard_normal(count), budget / 4.0)
     tracemalloc.start()
-    method.transform(record, generator.standard_normal(count))
+    field(generator.standard_normal(count))
     memory = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     label = name + "".join(f", {key} = {value:g}" for key, value in options.items())
-    error = covariance_error(name, record)
-    return Measurement(
-        case.name, label, 1e3 * preparing, drawing, numbers, error, 0.0, memory / 1e6, "deterministic error"
-    )
+    error, remark = covariance_error(name, record), "deterministic error"
+    if conditioning:
+        remark += f"; of the conditional covariance {conditioning.covariance_error:.1e} more"
+    return Measurement(case.name, label, 1e3 * preparing, drawing, numbers, error, 0.0, memory / 1e6, remark)
 
 
 def _peer(case: Case, name: str, make: Callable[[Case], peers.Draw], budget: float) -> Measurement:
@@ -85,6 +93,8 @@ def _peer(case: Case, name: str, make: Callable[[Case], peers.Draw], budget: flo
     preparing = time.process_time() - started
     factor = count / (part.columns * part.rows)
     drawing = factor * _least(lambda: draw(1), budget)
+    if case.data_count:
+        return Measurement(case.name, name, 1e3 * preparing, drawing, 0.0, nan, 0.0, nan, "error not sampled")
     error, noise = _sampled_error(part, draw, budget)
     return Measurement(case.name, name, 1e3 * preparing, drawing, 0.0, error, noise, nan, remark)
 

@@ -5,6 +5,7 @@ Their lengths are not theta: gstools counts theta / 2 for an exponential, geone 
 
 from collections.abc import Callable
 from importlib.util import find_spec
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,8 +19,12 @@ def _gstools(case: Case) -> Draw:
     import gstools
 
     model = gstools.Exponential(dim=2, var=1.0, len_scale=[case.theta_h / 2.0, case.theta_v / 2.0])
-    points = case.points
-    field = gstools.SRF(model, mode_no=GSTOOLS_MODES, seed=0)
+    points, data = case.points, case.data
+    if case.data_count:
+        kriging = gstools.krige.Simple(model, cond_pos=data.places.T, cond_val=data.values)
+        field = gstools.CondSRF(kriging, mode_no=GSTOOLS_MODES)
+    else:
+        field = gstools.SRF(model, mode_no=GSTOOLS_MODES, seed=0)
     return lambda seed: np.asarray(field((points[:, 0], points[:, 1]), seed=seed, mesh_type="unstructured"))
 
 
@@ -51,11 +56,18 @@ def _gaussianfft(case: Case) -> Draw:
     return draw
 
 
-# name: (what makes the draw, whether it needs a lattice)
-PEERS: dict[str, tuple[Callable[[Case], Draw], bool]] = {
-    "gstools": (_gstools, False),
-    "geone": (_geone, True),
-    "gaussianfft": (_gaussianfft, True),
+class Peer(NamedTuple):
+    """What makes the draw, whether it needs a lattice, and whether its fields can be conditioned here."""
+
+    make: Callable[[Case], Draw]
+    needs_lattice: bool
+    conditions: bool = False
+
+
+PEERS = {
+    "gstools": Peer(_gstools, needs_lattice=False, conditions=True),
+    "geone": Peer(_geone, needs_lattice=True),
+    "gaussianfft": Peer(_gaussianfft, needs_lattice=True),
 }
 
 
