@@ -1,5 +1,8 @@
 """The random properties of a soil: their fields in all layers, on the points or a reference lattice, realised together.
 
+A material point has the field's value in the middle of its square, where the method needs a lattice to be fast: but for
+points whose squares the ground surface cuts, that is where they are. `ANYWHERE` else it has the value at the point.
+
 The vector `xi` of a realisation holds the parts of the properties in the order of the study; the part of a property
 those of its soils, from above all layers down; the part of a soil is what its method takes.
 """
@@ -19,6 +22,7 @@ from rfmpm.random_fields.layers import settings_of_soils, soil_of_points
 from rfmpm.random_fields.measurements import Measurements, measurements
 from rfmpm.random_fields.trend import ByDepth, Scaled, Trend
 
+ANYWHERE = ("cholesky", "nufft")  # methods for which points need no lattice
 LARGEST_ANGLE = 80.0 / 180.0 * pi  # [rad], as for an angle that is not random
 
 
@@ -63,6 +67,11 @@ class Site(NamedTuple):
     square: float  # side of the square that a material point stands for [m]
     crest: float  # height of the crest, from which depths are measured [m]
     extent: tuple[float, float]  # length and height from the origin that squares of any cell size may touch [m]
+
+    @property
+    def middles(self) -> np.ndarray:
+        """Middles of the points' squares, shape (n, 2) [m]; where the surface cuts a square, its point is elsewhere."""
+        return (np.floor(self.points / self.square + 1e-9) + 0.5) * self.square
 
 
 @dataclass(frozen=True)
@@ -183,7 +192,7 @@ def means(properties: Properties, count: int) -> dict[str, np.ndarray]:
 def _prepare_property(
     name: str, settings: Any, material: Any, site: Site, store: Path | None, before: list[Part]
 ) -> Property:
-    points, taken, side = site.points, None, site.square
+    points, taken, side = site.points if settings.method in ANYWHERE else site.middles, None, site.square
     if settings.reference_cell_m is not None:
         ratio = round(site.cell / settings.reference_cell_m)
         points, taken = reference(site.points, site.square, ratio, site.extent, settings.reference_value or "mean")

@@ -72,7 +72,7 @@ def _method(case: Case, name: str, options: dict, budget: float) -> Measurement:
     field(generator.standard_normal(count))
     memory = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    label = name + "".join(f", {key} = {value:g}" for key, value in options.items())
+    label = name + "".join(f", {key} = {value:.3g}" for key, value in options.items())
     error, remark = covariance_error(name, record), "deterministic error"
     if conditioning:
         remark += f"; of the conditional covariance {conditioning.covariance_error:.1e} more"

@@ -33,7 +33,9 @@ def study():
 
 @pytest.fixture(scope="module")
 def site():
-    points = np.random.default_rng(3).uniform([0.0, 0.0], [6.0, 5.0], (40, 2))
+    # Middles of some of the squares of half a metre.
+    square = np.random.default_rng(3).choice(120, 40, replace=False)
+    points = 0.5 * (np.column_stack(np.divmod(square, 10)) + 0.5)
     return Site(points, 1.0, 0.5, 5.0, (10.0, 5.0))
 
 
@@ -55,6 +57,21 @@ def asked_rho(study, points):
     lag = points[:, None] - points[None, :]
     h, v = lag[..., 0] / field.scale_of_fluctuation_h_m, lag[..., 1] / field.scale_of_fluctuation_v_m
     return np.exp(-2.0 * np.hypot(h, v))
+
+
+def test_where_squares_are_cut_a_lattice_method_takes_their_middles_and_cholesky_their_points():
+    study = rfmpm.load_study(CONFIG.parent / "short_slope_random.toml")
+    prepared = {}
+    for method in ("auto", "cholesky"):
+        changed = study.with_changes({"random_field.cohesion.method": method})
+        prepared[method] = realisation.prepare(changed).fields["cohesion"].parts[0]
+    points, middles = prepared["cholesky"].points, prepared["auto"].points
+    assert prepared["auto"].field.method == "ar1"
+    square = 0.5 * study.discretisation.cell_m
+    apart = np.abs(middles - points).max(axis=1)
+    cut = apart > 1e-9
+    assert 0 < cut.sum() == 40  # twenty cells of the face, two squares each
+    assert apart.max() == pytest.approx(square / 6.0)  # the centroid of a triangle is a third of a side from the corner
 
 
 def test_covariance_within_and_between_properties(study, site):
@@ -163,7 +180,7 @@ def test_a_trend_scales_the_median_with_depth(study):
     trending = study.with_changes({"random_field.cohesion.trend_kpa_per_m": 0.5})
     prepared = realisation.prepare(trending)
     median = properties.realise(prepared.properties, np.zeros(prepared.properties.n_variables))["cohesion"]
-    depth = 5.0 - prepared.scene.points.position.y
+    depth = 5.0 - prepared.fields["cohesion"].parts[0].points[:, 1]
     np.testing.assert_allclose(median, (5e3 + 500.0 * depth) / np.sqrt(1.09), rtol=1e-12)
 
 

@@ -29,7 +29,7 @@ def test_table_compares_asked_and_found_and_the_picture_is_written(tmp_path):
     assert all(abs(ratio) < 4.0 for *_, ratio in numbers.values())
     for asked, found, error, ratio in numbers.values():
         assert found == pytest.approx(asked + ratio * error, abs=0.06 * error + 1e-3)
-    assert "cohesion: method cholesky, " in lines[0]
+    assert "cohesion: method ar1, " in lines[0]  # a separable Markov correlation on a lattice
     assert lines[-1] == str(tmp_path / "field" / "field.png")
     with Image.open(tmp_path / "field" / "field.png") as image:
         image.verify()
