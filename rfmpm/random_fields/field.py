@@ -102,7 +102,6 @@ def prepare(
         raise ValueError(f"points of shape {points.shape}: must be finite positions, shape (n, 2), n > 0")
     law = law_of(settings, box)
     has_data = data is not None and len(data.values) > 0
-    _check_together(settings, trend, has_data)
     marginal = _marginal(law, mean, settings, trend, points)
     method, record = _record(law, settings, points, store, shared)
     fixed = law.correlation, marginal, method, record, law.nugget, len(points), law.variance_factor
@@ -163,15 +162,3 @@ def _record(
         if isinstance(law.correlated, InGaussianSpace):
             raise ValueError(f"{error}: {NO_SUCH_FIELD}") from error
         raise
-
-
-def _check_together(settings: Any, trend: Trend | None, has_data: bool) -> None:
-    is_averaged = settings.averaging == "volume"
-    if is_averaged and has_data:
-        raise ValueError("averaging = 'volume': cannot go with data, which are values at points; take 'point'")
-    is_physical = getattr(settings, "correlation_space", None) == "physical"
-    if trend is not None and trend.deviation_gain is not None and (is_averaged or is_physical):
-        raise ValueError(
-            "standard_deviation_trend_kpa_per_m: cannot go with averaging = 'volume' or correlation_space = "
-            "'physical', for which the coefficient of variation must be the same at every depth; leave one of them out"
-        )

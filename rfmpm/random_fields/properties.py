@@ -153,7 +153,6 @@ def prepare(study: Any, site: Site, store: Path | None = None) -> Properties:
             raise ValueError(f"random_field.{name}: {error}") from None
     if not study.random_field_correlation:
         return Properties(entries, None)
-    _check_that_the_first_has_the_data(study)
     _check_that_they_share(entries, study.random_field_correlation)
     return Properties(entries, mixing_matrix(list(entries), study.random_field_correlation))
 
@@ -233,19 +232,6 @@ def _check_that_they_share(entries: Mapping[str, Property], correlations: Any) -
             raise ValueError(
                 f"{' and '.join(entry.between)} are correlated, but not with one correlation in space on the same "
                 "points: give both fields the same correlation, scales of fluctuation, rotation and layers"
-            )
-
-
-def _check_that_the_first_has_the_data(study: Any) -> None:
-    # The later of two correlated fields is a share of the earlier one plus what is independent of it: data of the
-    # earlier one bear on both as they should, data of the later one would have to change the earlier one too.
-    order = list(study.random_field)
-    for entry in study.random_field_correlation:
-        later = max(entry.between, key=order.index)
-        if study.random_field[later].data:
-            raise ValueError(
-                f"random_field.{later}: of correlated properties only the first in the study may have data: write "
-                f"[random_field.{later}] before the others, or leave out its data"
             )
 
 

@@ -14,6 +14,8 @@ from rfmpm.study.models import RandomField
 OF_THE_VALUES = {
     *("distribution", "coefficient_of_variation"),
     *("trend_kpa_per_m", "standard_deviation_trend_kpa_per_m"),
+    *("lower_over_mean", "upper_over_mean", "sample", "sample_file"),
+    *("data", "data_file", "measurement_error"),
 }
 OF_THE_VALUES_IN_A_LAYER = {"mean_kpa", "mean_deg", "coefficient_of_variation"}
 SMALLEST_PIVOT = 1e-12  # of the matrix of the coefficients; below it a field would be no more than the others
@@ -52,6 +54,17 @@ def _correlated_fields_vary_alike(known: Known) -> Iterator[Problem]:
             yield _unequal(known, f"{other}.layer", text)
 
 
+def _the_first_of_them_has_the_data(known: Known) -> Iterator[Problem]:
+    """The later of two correlated fields is a share of the earlier one and what is independent of it."""
+    order = list(known["random_field"])
+    for _, *pair in _pairs(known):
+        if set(pair) <= set(order):
+            key = f"random_field.{max(pair, key=order.index)}.data"
+            if known[key]:
+                text = "must be left out: of correlated fields only the first in the study may have data"
+                yield Problem(path_of(key), f"{text}; write this one before the others")
+
+
 def _unequal(known: Known, key: str, text: str) -> Problem:
     return Problem(path_of(key), f"missing; {text}") if known[key] is None else problem(known, key, text)
 
@@ -87,5 +100,6 @@ def _coefficients_allow_each_other(known: Known) -> Iterator[Problem]:
 CORRELATION_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _correlated_fields_exist_once,
     _correlated_fields_vary_alike,
+    _the_first_of_them_has_the_data,
     _coefficients_allow_each_other,
 ]

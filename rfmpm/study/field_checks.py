@@ -144,6 +144,18 @@ def _reference_divides_the_cells(known: Known) -> Iterator[Problem]:
             yield problem(known, key, text)
 
 
+def _keys_go_together(known: Known) -> Iterator[Problem]:
+    for _, field, _ in _fields(known):
+        is_averaged = known[f"{field}.averaging"] == "volume"
+        if is_averaged and known[f"{field}.data"]:
+            text = 'must be "point" where there are data, which are values at points'
+            yield problem(known, f"{field}.averaging", text)
+        key = f"{field}.standard_deviation_trend_kpa_per_m"
+        if known[key] is not None and (is_averaged or known[f"{field}.correlation_space"] == "physical"):
+            text = 'must be left out where averaging = "volume" or correlation_space = "physical": these need one '
+            yield problem(known, key, f"{text}coefficient of variation at all depths")
+
+
 FIELD_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _field_has_its_material,
     _random_property_has_a_mean,
@@ -152,4 +164,5 @@ FIELD_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _trend_keeps_the_field_positive,
     _layers_cross_the_body,
     _reference_divides_the_cells,
+    _keys_go_together,
 ]

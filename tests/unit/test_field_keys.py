@@ -33,6 +33,7 @@ def layer(**keys):
     return {f"{COHESION}.layer": [{"top_m": 2.0} | keys]}
 
 
+DATUM = {"x_m": 3.0, "y_m": 2.0, "value": 15.0}
 FIELD = {
     "material": "clay",
     "distribution": "lognormal",
@@ -73,6 +74,18 @@ FIELD = {
         (layer(thickness_m=2.0), "unknown key"),
         ({FRICTION: FIELD}, 'is a material with law = "von_mises", which has no friction_angle'),
         ({"random_field.youngs_modulus": FIELD}, "unknown key"),
+        (
+            {f"{COHESION}.averaging": "volume", f"{COHESION}.data": [DATUM]},
+            'must be "point" where there are data, which are values at points',
+        ),
+        (
+            {f"{COHESION}.averaging": "volume", f"{COHESION}.standard_deviation_trend_kpa_per_m": 0.1},
+            "these need one coefficient of variation at all depths",
+        ),
+        (
+            {f"{COHESION}.correlation_space": "physical", f"{COHESION}.standard_deviation_trend_kpa_per_m": 0.1},
+            "these need one coefficient of variation at all depths",
+        ),
         (
             {"random_field.residual_cohesion": FIELD, "material.0.softening_modulus_kpa": 0.0},
             "must be given and greater",
@@ -125,6 +138,18 @@ def test_coefficients_that_exclude_each_other(drained):
         problem == "random_field_correlation: has coefficients that exclude each other: bring one of them closer to 0"
     )
     drained.with_changes(changes | {"random_field_correlation": [*both, last | {"coefficient": 0.63}]})
+
+
+def test_only_the_first_of_correlated_fields_may_have_data(drained):
+    assert drained.with_changes({f"{COHESION}.data": [DATUM]})
+    problems = problems_of(drained, {f"{FRICTION}.data": [DATUM]})
+    assert len(problems) == 1
+    assert "only the first in the study may have data" in problems[0]
+
+
+def test_correlated_fields_may_have_distributions_of_their_own(drained):
+    bounds = {f"{FRICTION}.lower_over_mean": 0.5, f"{FRICTION}.upper_over_mean": 2.0}
+    assert drained.with_changes({f"{FRICTION}.distribution": "beta"} | bounds)
 
 
 def test_the_same_pair_twice_is_refused(drained):
