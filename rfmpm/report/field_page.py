@@ -74,7 +74,8 @@ def write_field(study, index: int, directory: Path) -> list[str]:
     for number, (name, entry) in enumerate(prepared.fields.items()):
         path = directory / (f"field_{name}.png" if number else "field.png")
         own = [xi[start : start + entry.parts[0].field.n_variables] for xi in xis]
-        lines += _write_property(study, index, name, entry, own, (places, drawn[name]), path)
+        is_mixed = number > 0 and prepared.properties.mixing is not None
+        lines += _write_property(study, index, name, entry, own, (places, drawn[name], is_mixed), path)
         start += entry.n_variables
     return lines
 
@@ -88,8 +89,8 @@ def _write_property(study, index: int, name: str, entry, xis: Sequence, whole: t
     records = statistics(field, study.random_field[name], uppermost.mean, points, xis)
     sample = np.array([realise(field, xi) for xi in xis]) / look.per_field_unit
     if field.conditioning is None:
-        places, values = whole
-        _draw(study, index, look, (places, values / look.per_unit), sample, field.marginal, records, path)
+        places, values, is_mixed = whole
+        _draw(study, index, look, (places, values / look.per_unit, is_mixed), sample, field.marginal, records, path)
     else:
         draw_conditional(study, index, look, points, field, sample, records, path)
     of = f" of the uppermost of {len(entry.parts)} soils" if len(entry.parts) > 1 else ""
@@ -130,7 +131,7 @@ def _table(records: Sequence, look: View) -> list[str]:
 
 
 def _draw(study, index: int, look: View, whole: tuple, sample: np.ndarray, marginal, records, path: Path) -> None:
-    """Draw the property in the whole body, values of `whole` at its places, and the statistics of `sample`."""
+    """Draw the property in the whole body, `whole` being places, values and whether mixed, and statistics of `sample`."""
     from rfmpm.mpm.scene import outline
 
     polygon = outline(study)
@@ -142,21 +143,23 @@ def _draw(study, index: int, look: View, whole: tuple, sample: np.ndarray, margi
         axes = figure.add_subplot(grid[0, :])
         axes.set_title(f"{look.title}, realisation {index}")
         (x, y), values = whole[0].T, whole[1]
+        is_sample = len(values) == sample.shape[1] and not whole[2]  # the first of the sample is what is drawn
         ends = tuple(np.percentile(values, [1.0, 99.0]))
         draw_panel(figure, axes, {"x": x, "y": y}, values, polygon, frame, ends, look.label, STRENGTH_MAP)
-        _histogram(figure.add_subplot(grid[1, 0]), index, look, sample, marginal)
+        _histogram(figure.add_subplot(grid[1, 0]), index, look, sample, marginal, is_sample)
         draw_correlations(figure.add_subplot(grid[1, 1]), records)
         figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
 
 
-def _histogram(axes, index: int, look: View, sample: np.ndarray, marginal) -> None:
+def _histogram(axes, index: int, look: View, sample: np.ndarray, marginal, is_sample: bool) -> None:
     # The asked density by change of variable from the standard normal: it needs no formula of each distribution.
     z = np.linspace(-4.0, 4.0, 801)
     value = marginal.transform(z) / look.per_field_unit
     density = np.exp(-0.5 * z**2) / np.sqrt(2.0 * np.pi) / np.gradient(value, z)
     edges = np.linspace(*np.percentile(sample, [0.05, 99.95]), 41)
     axes.hist(sample.ravel(), bins=edges, density=True, color=BLUE, alpha=0.3, label=f"{len(sample)} realisations")
-    axes.hist(sample[0], bins=edges, density=True, histtype="step", color=BLUE, label=f"realisation {index}")
+    if is_sample:
+        axes.hist(sample[0], bins=edges, density=True, histtype="step", color=BLUE, label=f"realisation {index}")
     axes.plot(value, density, color=VERMILION, label="asked")
     axes.set(xlabel=f"{look.field} [{look.unit}]", ylabel="density", title="Distribution", xlim=edges[[0, -1]])
     axes.legend(loc="upper right")
