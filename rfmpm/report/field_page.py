@@ -131,7 +131,7 @@ def _table(records: Sequence, look: View) -> list[str]:
 
 
 def _draw(study, index: int, look: View, whole: tuple, sample: np.ndarray, marginal, records, path: Path) -> None:
-    """Draw the property in the whole body, `whole` being places, values and whether mixed, and statistics of `sample`."""
+    """Draw the whole body, `whole` being places, values and whether mixed, and the statistics of the sample."""
     from rfmpm.mpm.scene import outline
 
     polygon = outline(study)
