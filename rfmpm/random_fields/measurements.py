@@ -92,7 +92,7 @@ def standard_normal_data(marginal: Marginal, data: Measurements) -> StandardNorm
         low, high = (marginal.transform(np.full(len(z), end))[k] for end in (-FARTHEST, FARTHEST))
         raise ValueError(
             f"data.{k}: the value {data.values[k]:.6g} at {_place(data, k)} lies outside what the distribution allows, "
-            f"{low:.4g} to {high:.4g} (probability 1e-15 beyond); is its unit right, and the mean of the field?"
+            f"{low:.4g} to {high:.4g}, in SI units (probability 1e-15 beyond); are the unit and the field's mean right?"
         )
     step = 1e-4
     upper, lower = marginal.transform(z + step), marginal.transform(z - step)

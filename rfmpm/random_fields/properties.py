@@ -231,7 +231,8 @@ def _check_that_they_share(entries: Mapping[str, Property], correlations: Any) -
         if not same:
             raise ValueError(
                 f"{' and '.join(entry.between)} are correlated, but not with one correlation in space on the same "
-                "points: give both fields the same correlation, scales of fluctuation, rotation and layers"
+                "points: give both fields the same correlation, scales of fluctuation, rotation and layers; with "
+                'correlation_space = "physical" or averaging = "volume" the same distribution and variation too'
             )
 
 

@@ -53,6 +53,8 @@ def read_sounding(path: Path, factor: float = 1.0) -> Sounding:
     ]
     if len(depth) < FEWEST:
         problems.append(f"holds {len(depth)} values: must be at least {FEWEST}")
+    if len(depth) and np.ptp(value) <= 1e-9 * np.abs(value).max():
+        problems.append("holds one and the same value at all depths: nothing varies")
     if problems:
         raise ColumnsError(path, problems[:FEWEST])
     return Sounding(depth, value)

@@ -24,4 +24,5 @@ def draw_correlations(axes, records: Sequence) -> None:
         axes.plot([], [], color=colour, marker=marker, ms=4, lw=1.2, label=f"along {direction}")
     axes.axhline(0.0, color="black", lw=0.6)
     axes.set(xlabel="lag [m]", ylabel=f"{kind.lower()} [-]", title=f"{kind}: asked (line), found ± 2 std. errors")
-    axes.legend(loc="upper right")
+    if axes.get_legend_handles_labels()[0]:  # none where no points are a lag apart
+        axes.legend(loc="upper right")

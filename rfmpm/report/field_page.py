@@ -88,18 +88,38 @@ def _write_property(study, index: int, name: str, entry, xis: Sequence, whole: t
     field, points = uppermost.at_crest, uppermost.points
     records = statistics(field, study.random_field[name], uppermost.mean, points, xis)
     sample = np.array([realise(field, xi) for xi in xis]) / look.per_field_unit
+    places, values, is_mixed = whole
     if field.conditioning is None:
-        places, values, is_mixed = whole
         _draw(study, index, look, (places, values / look.per_unit, is_mixed), sample, field.marginal, records, path)
     else:
-        draw_conditional(study, index, look, points, field, sample, records, path)
+        trending = np.array([realise(uppermost.field, xi) for xi in xis[:2]]) / look.per_field_unit
+        draw_conditional(study, index, look, points, uppermost.field, trending, records, path)
     of = f" of the uppermost of {len(entry.parts)} soils" if len(entry.parts) > 1 else ""
     return [
         f"{look.field}{of}: {method_line(field)}",
+        *_notes(study.random_field[name], entry, is_mixed),
         *_table(records, look),
-        *data_lines(field, xis),
+        *data_lines(uppermost.field, xis),
         str(path),
     ]
+
+
+def _notes(settings, entry, is_mixed: bool) -> list[str]:
+    """What the statistics leave out."""
+    notes = {
+        "those of the crest: a trend changes what the values stand for, not how they vary": (
+            entry.parts[0].field is not entry.parts[0].at_crest
+        ),
+        "those of this soil alone; data in other soils are not counted": len(entry.parts) > 1,
+        "those of the reference points: the mean over a material point's square varies less": (
+            entry.taken is not None and entry.taken.shape[1] > 1
+        ),
+        "those of the field before it is correlated with the earlier one; the map is that after it": is_mixed,
+        "those of the standard-normal field, whose correlation makes that of the values as asked": (
+            settings.correlation_space == "physical"
+        ),
+    }
+    return [f"the statistics are {note}" for note, applies in notes.items() if applies]
 
 
 def method_line(field) -> str:

@@ -21,6 +21,7 @@ SMALLEST_SAMPLE = 10
 NODES, STEP = np.linspace(-14.0, 14.0, 28001, retstep=True)
 WEIGHTS = STEP * np.exp(-0.5 * NODES**2) / sqrt(2.0 * np.pi)
 STEEPEST = 4.0  # slope of the logarithm in a tail: the square of such values still has its mass below 14
+FARTHEST_LOGARITHM = 300.0  # of a value over the median: numbers far from overflow
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ class Empirical(Distribution):
         def excess(power: float) -> float:
             return _spread(power * quantile)[1] - coefficient_of_variation
 
-        highest = STEEPEST / max(_tail_slopes(log_sample)[1], 1e-3)
+        highest = min(STEEPEST / max(_tail_slopes(log_sample)[1], 1e-3), FARTHEST_LOGARITHM / np.abs(quantile).max())
         if excess(highest) < 0.0:
             raise ValueError(
                 f"coefficient_of_variation = {coefficient_of_variation:g}: too much for the shape of this sample, at "

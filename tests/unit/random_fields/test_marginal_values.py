@@ -185,6 +185,12 @@ def test_the_order_the_unit_and_ties_of_a_sample_do_not_matter():
     np.testing.assert_allclose(other, first, rtol=1e-10)
 
 
+def test_a_sample_of_two_values_makes_no_overflow():
+    with np.errstate(over="raise", invalid="raise"):
+        marginal = MARGINALS["empirical"].from_moments(20e3, 0.25, sample=(*[1.0] * 8, 100.0, 100.0))
+        assert np.all(np.isfinite(marginal.transform(np.linspace(-8.0, 8.0, 9))))
+
+
 @pytest.mark.parametrize("sample", [np.arange(1.0, 10.0), np.ones(20), np.arange(20.0), np.full(20, np.nan)])
 def test_a_sample_too_small_equal_or_not_positive_is_refused(sample):
     with pytest.raises(ValueError, match="sample: must be at least 10 positive values"):
