@@ -9,6 +9,7 @@ from rfmpm.columns import ColumnsError, read_columns
 
 HEADERS = {"depth": ("depth_m", "depth"), "value": ("value", "value_kpa", "value_deg")}
 FEWEST = 10  # values; below that no scale of fluctuation is told from another
+MOST = 2000  # values: the likelihood factors their covariance some forty times
 
 
 class Sounding(NamedTuple):
@@ -53,6 +54,8 @@ def read_sounding(path: Path, factor: float = 1.0) -> Sounding:
     ]
     if len(depth) < FEWEST:
         problems.append(f"holds {len(depth)} values: must be at least {FEWEST}")
+    if len(depth) > MOST:
+        problems.append(f"holds {len(depth)} values: must be at most {MOST}; take one in {-(-len(depth) // MOST)}")
     if len(depth) and np.ptp(value) <= 1e-9 * np.abs(value).max():
         problems.append("holds one and the same value at all depths: nothing varies")
     if problems:

@@ -186,6 +186,7 @@ def test_a_sounding_is_read_by_increasing_depth_with_a_factor(write):
         ("".join(f"{k},{k}\n" for k in range(12)), "line 2: value 0: must be greater than 0"),
         ("3,1\n" + "".join(f"{k},1\n" for k in range(12)), "line 2 and line 6: both at a depth of 3 m"),
         ("1,nan\n", "line 2: value = 'nan'"),
+        ("".join(f"{k},{k}\n" for k in range(1, 4002)), "holds 4001 values: must be at most 2000; take one in 3"),
         ("".join(f"{k},3\n" for k in range(1, 13)), "one and the same value at all depths"),
     ],
 )
