@@ -20,6 +20,8 @@ MEAN_KEY = {
 }
 LAYER_MEAN_KEY = {"cohesion": "mean_kpa", "residual_cohesion": "mean_kpa", "friction_angle": "mean_deg"}
 SOFTENS_WITH = {"von_mises": "softening_modulus_kpa"} | dict.fromkeys(FRICTIONAL, "residual_plastic_strain")
+SEPARABLE = ("markov_separable", "gaussian", "second_order_markov", "cosine_exponential")
+FACTORISED = {"ar1": ("markov_separable",), "kronecker": SEPARABLE}  # methods along x and y, and their correlations
 LARGEST_VARIATION_OF_FRICTION = 0.5  # of tan phi, for which 0.05 to 0.2 are reported
 LARGEST_VARIATION = 2.0
 
@@ -156,6 +158,31 @@ def _keys_go_together(known: Known) -> Iterator[Problem]:
             yield problem(known, key, f"{text}coefficient of variation at all depths")
 
 
+def _method_suits_the_correlation(known: Known) -> Iterator[Problem]:
+    for _, field, _ in _fields(known):
+        method, correlation = known[f"{field}.method"], known[f"{field}.correlation"]
+        if method not in FACTORISED:
+            continue
+        layers = [f"{field}.layer.{number}" for number in range(len(known[f"{field}.layer"] or ()))]
+        turned = [known[f"{field}.rotation_deg"]]
+        for layer in layers:
+            own = known[f"{layer}.rotation_deg"]
+            turned.append(known[f"{layer}.dip_deg"] if own is None else own)
+        is_mapped = known[f"{field}.averaging"] == "volume" or known[f"{field}.correlation_space"] == "physical"
+        if correlation not in FACTORISED[method] or any(angle % 90.0 for angle in turned) or is_mapped:
+            text = f"needs one of the correlations {', '.join(FACTORISED[method])}, of the standard-normal field, at "
+            yield problem(known, f"{field}.method", f'{text}points, and no rotation or dip; "auto" suits all')
+
+
+def _errors_have_data(known: Known) -> Iterator[Problem]:
+    for _, field, _ in _fields(known):
+        has_data = known[f"{field}.data"] or known[f"{field}.data_file"]
+        if known[f"{field}.measurement_error"] is not None and not has_data:
+            yield problem(
+                known, f"{field}.measurement_error", "is that of data: give data or a data_file, or leave it out"
+            )
+
+
 FIELD_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _field_has_its_material,
     _random_property_has_a_mean,
@@ -165,4 +192,6 @@ FIELD_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _layers_cross_the_body,
     _reference_divides_the_cells,
     _keys_go_together,
+    _method_suits_the_correlation,
+    _errors_have_data,
 ]

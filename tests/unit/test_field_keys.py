@@ -5,7 +5,9 @@ from pathlib import Path
 import pytest
 
 import rfmpm
+from rfmpm.random_fields.correlation import CORRELATIONS
 from rfmpm.study import StudyError
+from rfmpm.study.field_checks import SEPARABLE
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 COHESION, FRICTION = "random_field.cohesion", "random_field.friction_angle"
@@ -74,6 +76,17 @@ FIELD = {
         (layer(thickness_m=2.0), "unknown key"),
         ({FRICTION: FIELD}, 'is a material with law = "von_mises", which has no friction_angle'),
         ({"random_field.youngs_modulus": FIELD}, "unknown key"),
+        ({f"{COHESION}.measurement_error": 0.1}, "is that of data: give data or a data_file, or leave it out"),
+        (
+            {f"{COHESION}.method": "ar1", f"{COHESION}.correlation": "gaussian"},
+            "needs one of the correlations markov_s",
+        ),
+        ({f"{COHESION}.method": "kronecker", f"{COHESION}.rotation_deg": 10.0}, "and no rotation or dip"),
+        (
+            {f"{COHESION}.method": "ar1", f"{COHESION}.layer": [{"top_m": 2.0, "dip_deg": 5.0}]},
+            "and no rotation or dip",
+        ),
+        ({f"{COHESION}.method": "ar1", f"{COHESION}.averaging": "volume"}, "of the standard-normal field, at points"),
         (
             {f"{COHESION}.averaging": "volume", f"{COHESION}.data": [DATUM]},
             'must be "point" where there are data, which are values at points',
@@ -138,6 +151,10 @@ def test_coefficients_that_exclude_each_other(drained):
         problem == "random_field_correlation: has coefficients that exclude each other: bring one of them closer to 0"
     )
     drained.with_changes(changes | {"random_field_correlation": [*both, last | {"coefficient": 0.63}]})
+
+
+def test_the_separable_correlations_are_those_of_the_fields():
+    assert set(SEPARABLE) == {name for name, kernel in CORRELATIONS.items() if kernel.separable}
 
 
 def test_only_the_first_of_correlated_fields_may_have_data(drained):
