@@ -20,6 +20,7 @@ from rfmpm.mpm.laws.elastic import hooke
 from rfmpm.mpm.solvers import advance
 from rfmpm.mpm.solvers.grid import clear, update_grid
 from rfmpm.mpm.state import start
+from rfmpm.random_fields.properties import Properties
 from rfmpm.realisation import Prepared
 from rfmpm.study import Study
 
@@ -70,7 +71,7 @@ class Bench:
         }
         self.study = Study(**SLOPE).with_changes(changes)
         self.random = realisation.prepare(self.study)
-        self.plain = replace(self.random, fields={})
+        self.plain = replace(self.random, properties=Properties({}, None))
         self.outcome = realisation.simulate(self.plain)
 
     def least(self, *works: Callable[[], Any]) -> tuple[float, ...]:

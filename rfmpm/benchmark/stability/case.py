@@ -51,6 +51,7 @@ def random_strength(cov: float, scale_h: float, scale_v: float) -> dict[str, Any
         "correlation": "markov_separable",
         "scale_of_fluctuation_h_m": scale_h,
         "scale_of_fluctuation_v_m": scale_v,
+        "method": "cholesky",
     }
 
 

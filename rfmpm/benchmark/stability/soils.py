@@ -67,6 +67,7 @@ def _draw(rng: np.random.Generator, cov: float, scale_v: float) -> dict:
             "correlation": str(rng.choice(["markov_separable", "markov_ellipsoidal", "gaussian"])),
             "scale_of_fluctuation_h_m": even(20.0, 80.0),
             "scale_of_fluctuation_v_m": scale_v,
+            "method": "cholesky",
         },
         "time.end_s": 15.0,
     }
