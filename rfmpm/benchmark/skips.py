@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rfmpm import realisation
-from rfmpm.benchmark.field_cost import prepare_field, realise_field
+from rfmpm.benchmark.field_cost import prepare_field, realise_field, without_fields
 from rfmpm.benchmark.stability.case import SLOPE, random_strength
 from rfmpm.kernel_tools import Tensor
 from rfmpm.mpm import scene as scenes
@@ -20,7 +20,6 @@ from rfmpm.mpm.laws.elastic import hooke
 from rfmpm.mpm.solvers import advance
 from rfmpm.mpm.solvers.grid import clear, update_grid
 from rfmpm.mpm.state import start
-from rfmpm.random_fields.properties import Properties
 from rfmpm.realisation import Prepared
 from rfmpm.study import Study
 
@@ -71,7 +70,7 @@ class Bench:
         }
         self.study = Study(**SLOPE).with_changes(changes)
         self.random = realisation.prepare(self.study)
-        self.plain = replace(self.random, properties=Properties({}, None))
+        self.plain = without_fields(self.random)
         self.outcome = realisation.simulate(self.plain)
 
     def least(self, *works: Callable[[], Any]) -> tuple[float, ...]:
