@@ -69,7 +69,7 @@ def _words(interval) -> str:
 
 
 def study_table(best, sounding) -> list[str]:
-    """The estimate as a table of a study file; the horizontal scale is a placeholder that says so."""
+    """The estimate as a table of a study file, ready but for the horizontal scale, which a sounding cannot tell."""
     lines = [
         "[random_field.cohesion]",
         'material = "clay"                 # the name of yours, whose mean is '
@@ -78,8 +78,7 @@ def study_table(best, sounding) -> list[str]:
         f"coefficient_of_variation = {best.coefficient_of_variation.value:.3g}",
         f'correlation = "{best.correlation}"',
         f"scale_of_fluctuation_v_m = {best.theta.value:.3g}",
-        f"scale_of_fluctuation_h_m = {30.0 * best.theta.value:.3g}  "
-        "# 30 times the vertical: a sounding tells nothing of it",
+        "# scale_of_fluctuation_h_m =       # yours: one sounding tells nothing of it; 20 to 80 m are usual",
     ]
     if best.trend == "linear":
         lines.append(f"trend_kpa_per_m = {best.gain:.3g}")

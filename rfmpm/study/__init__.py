@@ -1,11 +1,11 @@
 """The configuration: what a study file may say, and what is wrong with one that says something else."""
 
 from rfmpm.study.errors import StudyError
+from rfmpm.study.field_models import RandomField
 from rfmpm.study.load import load_study
 from rfmpm.study.models import (
     BlockGeometry,
     ElasticMaterial,
-    RandomField,
     SlopeGeometry,
     VonMisesMaterial,
 )

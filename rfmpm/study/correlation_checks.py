@@ -5,10 +5,9 @@ from math import sqrt
 from typing import Any
 
 from rfmpm.study.errors import Problem
-from rfmpm.study.field_models import FieldLayer
+from rfmpm.study.field_models import FieldLayer, RandomField
 from rfmpm.study.kinds import Table
 from rfmpm.study.known import Known, path_of, problem
-from rfmpm.study.models import RandomField
 
 # Keys that say what the values are; all others say how they vary in space, and are those of both fields.
 OF_THE_VALUES = {

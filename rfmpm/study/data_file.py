@@ -1,4 +1,4 @@
-"""Reads the files of measured values that a study names into the study itself."""
+"""Reads measured values that every realisation agrees with."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import hypot, isnan
@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from rfmpm.columns import Columns, ColumnsError, read_columns
-from rfmpm.study.errors import Problem
 
 HEADERS = {
     "x_m": ("x_m", "x"),
@@ -17,44 +16,21 @@ HEADERS = {
 SAME_PLACE = 1e-9  # [m]
 
 
-def read_data_files(tables: Mapping[str, Any], folder: Path) -> tuple[dict[str, Any], list[str]]:
-    """Replace the `data_file` of every random field by its content, as `data`.
+def read_data(path: Path, entry: Mapping[str, Any]) -> list[dict[str, float]]:
+    """Read the measured values of a random field.
 
     Args:
-        tables: of the study file; not changed.
-        folder: to which the names of files are relative.
+        path: a CSV file.
+        entry: the table of the field; its `measurement_error` is that of values without one.
 
     Returns:
-        the tables without `data_file`, and what is wrong with the files, with the lines.
+        `data` of the table.
+
+    Raises:
+        ColumnsError: what is wrong with the file, by line.
+        OSError: it cannot be read.
     """
-    problems: list[str] = []
-    fields = tables.get("random_field")
-    if not isinstance(fields, Mapping):
-        return dict(tables), problems
-    changed = {}
-    for variable, entry in fields.items():
-        changed[variable] = entry
-        if isinstance(entry, Mapping) and isinstance(entry.get("data_file"), str):
-            changed[variable] = {key: value for key, value in entry.items() if key != "data_file"}
-            found = _data(folder / entry["data_file"], entry)
-            if isinstance(found, list):
-                changed[variable]["data"] = found
-            else:
-                path = ("random_field", str(variable), "data_file")
-                problems += [str(Problem(path, text, entry["data_file"])) for text in found]
-    return {**tables, "random_field": changed}, problems
-
-
-def _data(path: Path, entry: Mapping[str, Any]) -> list[dict[str, float]] | tuple[str, ...]:
-    """The data, or what is wrong."""
-    if "data" in entry:
-        return ("cannot be given together with data",)
-    try:
-        columns = read_columns(path, HEADERS, optional=["measurement_error"])
-    except ColumnsError as error:
-        return tuple(error.problems)
-    except OSError as error:
-        return (f"cannot be read: {error.strerror}",)
+    columns = read_columns(path, HEADERS, optional=["measurement_error"])
     rows = _rows(columns)
     common = entry.get("measurement_error")
     labels = [f"line {line}" for line in columns.lines]
@@ -69,7 +45,9 @@ def _data(path: Path, entry: Mapping[str, Any]) -> list[dict[str, float]] | tupl
     ]
     places = [(row["x_m"], row["y_m"], row["value"], row.get("measurement_error", common) or 0.0) for row in rows]
     wrong += [f"{first} and {second} {text}" for first, second, text in contradictions(places, labels)]
-    return tuple(wrong) or rows
+    if wrong:
+        raise ColumnsError(path, wrong)
+    return rows
 
 
 def _rows(columns: Columns) -> list[dict[str, float]]:

@@ -5,9 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from rfmpm.study.data_file import read_data_files
 from rfmpm.study.errors import StudyError
-from rfmpm.study.sample_file import read_sample_files
+from rfmpm.study.named_files import read_named_files
 from rfmpm.study.study import Study
 
 
@@ -40,9 +39,7 @@ def load_study(source: str | Path | Mapping[str, Any] | Study) -> Study:
 
 def _study(tables: dict[str, Any], folder: Path) -> Study:
     # Files are named relative to the folder. What is wrong with them is said together with what is wrong elsewhere.
-    tables, problems = read_data_files(tables, folder)
-    tables, more = read_sample_files(tables, folder)
-    problems += more
+    tables, problems = read_named_files(tables, folder)
     try:
         study = Study(**tables)
     except StudyError as error:

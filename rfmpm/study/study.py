@@ -14,7 +14,7 @@ from pydantic import BaseModel, Field
 from rfmpm.study.checks import joint_problems
 from rfmpm.study.diagnosis import Diagnosis
 from rfmpm.study.errors import Problem, StudyError
-from rfmpm.study.field_models import FieldCorrelation, Property
+from rfmpm.study.field_models import FieldCorrelation, Property, RandomField
 from rfmpm.study.kinds import Table
 from rfmpm.study.known import Known, path_of
 from rfmpm.study.models import (
@@ -26,7 +26,6 @@ from rfmpm.study.models import (
     Material,
     Output,
     Quantities,
-    RandomField,
     Time,
 )
 from rfmpm.study.schema import Hint

@@ -34,6 +34,7 @@ def test_the_study_table_can_be_put_into_a_study(sounding, tmp_path):
     table = tomllib.loads("\n".join(lines[lines.index("") + 1 :]))["random_field"]["cohesion"]
     study = load_study(RANDOM).with_changes({f"random_field.cohesion.{key}": value for key, value in table.items()})
     field = study.random_field["cohesion"]
+    assert "scale_of_fluctuation_h_m" not in table  # nothing is made up: the user must say it
     assert 0.2 < field.scale_of_fluctuation_v_m < 1.5  # the interval of a sounding of 20 theta, roughly
     assert 0.15 < field.coefficient_of_variation < 0.4
     with Image.open(tmp_path / "out" / "sounding.png") as image:
