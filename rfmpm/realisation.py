@@ -2,7 +2,7 @@
 
 import time
 from dataclasses import dataclass, replace
-from math import nan, sqrt
+from math import inf, nan, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +18,13 @@ from rfmpm.observer import Observer, final_state
 from rfmpm.quantities import QUANTITIES, first_minimum
 from rfmpm.random_fields import properties as random_properties
 from rfmpm.study import StudyError
-from rfmpm.variables import FAILED, STATUS, active_variables
+from rfmpm.variables import FAILED, STATUS, active_variables, failed_row
 
 WORTH_SHARING = 20_000  # points from which threads that share a step gain more than they wait for each other
+
+
+class OutOfTime(Exception):
+    """Raised where a realisation takes longer than it may."""
 
 
 @dataclass(frozen=True)
@@ -124,9 +128,16 @@ def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = 
         xi: standard-normal vector, shape (n_variables,); None draws it from the stream of (seed, level, index).
 
     Returns:
-        Every active variable by name; a numerical failure is a status with a reason, and its quantities are NaN.
+        Every active variable by name; a failure, by the numerics or by `failures.realisation_time_limit_s`, is a status
+        with a reason, and its quantities are NaN.
     """
-    outcome = _simulate(prepared, _fields(prepared, index, level, xi), frames=0, threads=1)
+    limit = prepared.study.failures.realisation_time_limit_s or inf
+    started = time.perf_counter()
+    try:
+        outcome = _simulate(prepared, _fields(prepared, index, level, xi), frames=0, threads=1, limit=limit)
+    except OutOfTime:
+        reason = f"took longer than failures.realisation_time_limit_s = {limit:g} s"
+        return failed_row(prepared.study, index, "timeout", reason, level, time.perf_counter() - started)
     return outcome.quantities | {
         "realisation": index,
         "level": level,
@@ -191,13 +202,17 @@ def _site(study, scene: scenes.Scene) -> random_properties.Site:
     )
 
 
-def _simulate(prepared: Prepared, fields: dict[str, np.ndarray], frames: int, threads: int) -> Outcome:
+def _simulate(
+    prepared: Prepared, fields: dict[str, np.ndarray], frames: int, threads: int, limit: float = inf
+) -> Outcome:
     started = time.perf_counter()
     study, scene = prepared.study, prepared.scene
     own, now = scenes.release(scene, fields), start()
     advance, arguments = SOLVERS[study.time.scheme], scenes.arguments(scene, own, threads)
     observer = Observer(scene, study, own.points, own.history, frames)
     while now.status == RUNNING and now.time < study.time.end_s:
+        if time.perf_counter() - started > limit:
+            raise OutOfTime
         until = min(observer.next_sample, study.time.end_s)
         now = advance(now, until, *arguments)
         observer.sample(now)

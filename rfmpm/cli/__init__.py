@@ -8,8 +8,10 @@ from typing import Annotated, Any
 import typer
 
 from rfmpm.cli.benchmark import benchmark
-from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY, end, ends_in_words
+from rfmpm.cli.endings import TOO_MANY_FAILED, WRONG_STUDY, end, ends_in_words
+from rfmpm.cli.run import OutFolder, StudyFile, run
 from rfmpm.cli.sounding import sounding
+from rfmpm.cli.status import status
 from rfmpm.cli.tables import cost_row, outcome_rows, print_table
 
 FRAMES_OF_AN_ANIMATION = 60
@@ -22,11 +24,11 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
+app.command("run")(ends_in_words(run))
+app.command("status")(ends_in_words(status))
 app.add_typer(benchmark, name="benchmark")
 app.command("sounding")(ends_in_words(sounding))
 
-StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
-OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.")]
 Index = Annotated[int, typer.Option("--index", min=0, metavar="I", help="Which realisation.")]
 
 
@@ -62,59 +64,6 @@ def rfmpm(
     ] = False,
 ) -> None:
     """Probability of run-out, failure volume and retrogression of a slope."""
-
-
-@command
-def run(
-    study: StudyFile,
-    out: OutFolder = None,
-    realisations: Annotated[int | None, typer.Option(metavar="N", help="Instead of the study's number.")] = None,
-    seed: Annotated[int | None, typer.Option(metavar="S", help="Instead of the study's seed.")] = None,
-    workers: Annotated[int | None, typer.Option(min=1, metavar="N", help="Local processes; default: cores.")] = None,
-    fresh: Annotated[bool, typer.Option("--fresh", help="Start anew instead of continuing.")] = False,
-    allow_failed: Annotated[
-        float, typer.Option(min=0.0, max=1.0, metavar="SHARE", help="Failed realisations beyond this share: exit 3.")
-    ] = 0.05,
-) -> None:
-    """Run the campaign, or continue what the folder holds of the same study."""
-    from rfmpm.study import load_study
-
-    given = {"study.realisations": realisations, "study.seed": seed}
-    settings = load_study(study).with_changes({path: value for path, value in given.items() if value is not None})
-    folder = out or Path(settings.output.directory)
-    dataset = _campaign(settings, folder, workers, fresh)
-    if dataset is None:
-        return  # another rank than the first
-    from rfmpm import report as reporting
-
-    typer.echo(f"dataset: {folder / 'ensemble.nc'}")
-    typer.echo(f"report:  {reporting.write(folder)}")
-    for line in reporting.summary_lines(dataset, settings):
-        typer.echo(line)
-    _end_if_too_many_failed(dataset, allow_failed)
-
-
-def _campaign(settings: Any, folder: Path, workers: int | None, fresh: bool) -> Any:
-    from rfmpm import ensemble
-    from rfmpm.ensemble.mpi import launched_ranks
-
-    if workers is not None and (launched_ranks() or 1) > 1:
-        end("--workers: the ranks of mpirun are the workers; leave the option out", WRONG_STUDY)
-    try:
-        return ensemble.run(settings, folder, realisations=settings.study.realisations, workers=workers, fresh=fresh)
-    except (ensemble.FolderMismatch, ensemble.LauncherMismatch) as error:
-        end(str(error), WRONG_STUDY)
-    except ensemble.Interrupted as error:
-        end(str(error), STOPPED_EARLY)
-
-
-def _end_if_too_many_failed(dataset: Any, allowed: float) -> None:
-    from rfmpm.variables import FAILED, STATUS
-
-    failed = int(dataset["status"].isin([STATUS[name] for name in FAILED]).sum())
-    total = dataset.sizes["realisation"]
-    if failed > allowed * total:
-        end(f"{failed} of {total} realisations failed, more than the allowed {allowed:.3g} of them", TOO_MANY_FAILED)
 
 
 @command

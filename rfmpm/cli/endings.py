@@ -44,4 +44,5 @@ def end(message: str, code: int) -> NoReturn:
 
 def _is_first_rank() -> bool:
     """Whether this process speaks for all: told from the launcher, so that no command needs MPI to say so."""
-    return all(os.environ.get(name, "0") == "0" for name in RANK_VARIABLES)
+    told = [os.environ[name] for name in RANK_VARIABLES if name in os.environ]
+    return all(rank == "0" for rank in told or [os.environ.get("SLURM_PROCID", "0")])

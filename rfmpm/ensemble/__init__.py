@@ -1,7 +1,9 @@
 """The runner: carries out a campaign over processes or MPI ranks, resumes it, and keeps failures as rows."""
 
+from rfmpm.ensemble.books import CampaignFailed
+from rfmpm.ensemble.campaign import Interrupted
 from rfmpm.ensemble.folder import FolderMismatch
 from rfmpm.ensemble.mpi import LauncherMismatch
-from rfmpm.ensemble.runner import Interrupted, run
+from rfmpm.ensemble.runner import run
 
-__all__ = ["FolderMismatch", "Interrupted", "LauncherMismatch", "run"]
+__all__ = ["CampaignFailed", "FolderMismatch", "Interrupted", "LauncherMismatch", "run"]

@@ -1,34 +1,79 @@
 """Hands out realisations to workers and keeps the books: who runs what, what is finished, who was lost."""
 
 import threading
+import time
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import inf
+from typing import Any
 
+from rfmpm.ensemble.books import FAILED_CODES, NAMES, Books
+from rfmpm.ensemble.markers import Task
 from rfmpm.ensemble.worker import Report
-from rfmpm.variables import FAILED, STATUS
 
-_FAILED_CODES = frozenset(STATUS[name] for name in FAILED)
+
+class Todo:
+    """Indices still to be run, held as ranges.
+
+    Args:
+        ranges: of indices, in order.
+    """
+
+    def __init__(self, ranges: Iterable[range]):
+        self.ranges = deque(ranges)
+
+    def __len__(self) -> int:
+        return sum(map(len, self.ranges))
+
+    def __bool__(self) -> bool:
+        return bool(self.ranges)
+
+    def take(self) -> int:
+        """Take the next index out."""
+        first = self.ranges.popleft()
+        if len(first) > 1:
+            self.ranges.appendleft(first[1:])
+        return first[0]
+
+
+@dataclass(frozen=True)
+class Held:
+    """What a worker has at hand."""
+
+    task: Task
+    since: float  # time.monotonic [s]
 
 
 class Dispatcher:
     """The one desk where every worker of a run claims; safe to use from several threads.
 
     Args:
-        todo: the realisations to run, in order.
-        journal: where segments and losses are noted.
+        todo: the realisations to run.
+        starts: starts of realisations that came to no end, by index.
+        books: of the campaign.
+        journal: where segments, failures and losses are noted.
         progress: the display.
+        deadline: nothing is handed out that would last beyond it, if it took as long as the longest so far; on the
+            clock of time.monotonic [s].
     """
 
-    def __init__(self, todo: Iterable[int], journal, progress):
-        self.todo = deque(todo)
-        self.journal, self.progress = journal, progress
-        self.held: dict[int, int] = {}
-        self.done = self.failed = 0
+    def __init__(self, todo: Todo, starts: Mapping[int, int], books: Books, journal, progress, deadline: float = inf):
+        self.todo, self.starts, self.books = todo, starts, books
+        self.journal, self.progress, self.deadline = journal, progress, deadline
+        self.held: dict[int, Held] = {}
+        self.hosts: dict[int, str] = {}
         self.losses: list[str] = []
-        self.is_stopped = False
+        self.longest = 0.0
+        self.stopped_by = ""
+        self.verdict = ""  # of the failure policy
         self._lock = threading.Lock()
 
-    def answer(self, rank: int, report: Report) -> int | None:
+    @property
+    def is_stopped(self) -> bool:
+        return bool(self.stopped_by or self.verdict)
+
+    def answer(self, rank: int, report: Report) -> Task | None:
         """Take the report of a worker and name its next realisation.
 
         Args:
@@ -36,38 +81,80 @@ class Dispatcher:
             report: what it did since the last one.
 
         Returns:
-            The next realisation, or None if it should end.
+            The next task, or None if it should end.
         """
         with self._lock:
             self.held.pop(rank, None)
-            for segment in report.segments:
-                self.journal.write("segment", rank=rank, **segment)
-            if report.status is not None:
-                self.done += 1
-                self.failed += report.status in _FAILED_CODES
-            if report.error:
-                self.losses.append(f"worker {rank} could not go on: {report.error}")
-                self.journal.write("worker_error", rank=rank, reason=report.error)
-            self.is_stopped |= report.is_stopping or bool(report.error)
-            self.progress.show(self.done, self.failed)
-            if report.is_last or self.is_stopped or not self.todo:
+            self._note(rank, report)
+            self.progress.show(self.books.done, self.books.failed)
+            if report.is_last or not self.todo or self._is_to_end():
                 return None
-            self.held[rank] = self.todo.popleft()
-            return self.held[rank]
+            index = self.todo.take()
+            self.held[rank] = Held(Task(index, 1 + self.starts.get(index, 0)), time.monotonic())
+            return self.held[rank].task
 
-    def stop(self) -> None:
-        """Hand out nothing more."""
-        self.is_stopped = True
+    def _note(self, rank: int, report: Report) -> None:
+        if report.host:
+            self.hosts[rank] = report.host
+        for segment in report.segments:
+            self.journal.write("segment", rank=rank, **segment)
+        if (ended := report.ended) is not None:
+            self.books.enter(ended)
+            self.longest = max(self.longest, ended.wall_time)
+            if ended.status in FAILED_CODES:
+                status, at = NAMES[ended.status], ended.realisation
+                self.journal.write("failed", rank=rank, realisation=at, status=status, reason=ended.reason)
+        if report.error:
+            self.losses.append(f"worker {rank} could not go on: {report.error}")
+            self.journal.write("worker_error", rank=rank, reason=report.error)
+            self.stop(self.losses[-1])
+        if report.stopping:
+            self.stop(report.stopping)
 
-    def lost(self, rank: int, reason: str) -> None:
+    def _is_to_end(self) -> bool:
+        self.verdict = self.verdict or self.books.why_not()
+        if time.monotonic() + self.longest >= self.deadline:
+            self.stop(
+                f"what is left of --wall-time is shorter than the longest realisation so far, {self.longest:.3g} s"
+            )
+        return self.is_stopped
+
+    def stop(self, reason: str) -> None:
+        """Hand out nothing more.
+
+        Args:
+            reason: what asks for it; the first one counts.
+        """
+        self.stopped_by = self.stopped_by or reason
+
+    def lost(self, rank: int, reason: str) -> bool:
         """Note a worker that died without a word; the others go on.
 
         Args:
             rank: of the worker.
             reason: what is known of its end.
+
+        Returns:
+            Whether another worker may take its place: it died over a realisation, and there is more to do.
         """
         with self._lock:
-            index = self.held.pop(rank, None)
+            held = self.held.pop(rank, None)
+            index = None if held is None else held.task.realisation
             at = "" if index is None else f" in realisation {index}"
             self.losses.append(f"worker {rank} died{at}: {reason}")
             self.journal.write("worker_lost", rank=rank, realisation=index, reason=reason)
+            return held is not None and bool(self.todo) and not self.is_stopped
+
+    def running(self) -> list[dict[str, Any]]:
+        """List what the workers have at hand, for status.json."""
+        clock = time.monotonic()
+        return [
+            {
+                "rank": rank,
+                "host": self.hosts.get(rank, ""),
+                "realisation": held.task.realisation,
+                "attempt": held.task.attempt,
+                "seconds": round(clock - held.since, 1),
+            }
+            for rank, held in sorted(self.held.items())
+        ]

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 
 from rfmpm.ensemble.dispatcher import Dispatcher
+from rfmpm.ensemble.markers import Task
 from rfmpm.ensemble.worker import Report, Worker
 
 LONGEST_SLEEP = 0.01  # seconds
@@ -17,17 +18,32 @@ class LauncherMismatch(RuntimeError):
 
 
 def launched_ranks() -> int | None:
-    """Count the ranks that an MPI launcher says it started, without importing MPI.
+    """Count the ranks that a launcher says it started, without importing MPI.
 
     Returns:
-        Their number, or None if this process was not started by a launcher.
+        Their number, or None if this process was not started by a launcher. The copies that `srun` starts without a way
+        to find each other count too.
     """
     for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE"):
         if name in os.environ:
             return int(os.environ[name])
+    tasks = int(os.environ.get("SLURM_STEP_NUM_TASKS", "1"))
     if "PMIX_RANK" in os.environ:
-        return int(os.environ.get("SLURM_STEP_NUM_TASKS", "1"))
-    return None
+        return tasks
+    is_step = "SLURM_STEP_ID" in os.environ and "SLURM_PROCID" in os.environ
+    return tasks if is_step and tasks > 1 else None
+
+
+def _remedy() -> str:
+    if "SLURM_STEP_ID" in os.environ and not {"PMI_SIZE", "PMIX_RANK"}.intersection(os.environ):
+        return (
+            "srun gave the copies no way to find each other; start them with mpirun -n N instead of srun, or with the "
+            "srun --mpi=... that fits your MPI (srun --mpi=list names them)"
+        )
+    return (
+        "mpirun belongs to another MPI than mpi4py uses; install the matching one with pip install 'rfmpm[mpi]' and "
+        "use its mpirun, which lies beside this Python"
+    )
 
 
 def pauses() -> Iterator[None]:
@@ -64,15 +80,21 @@ class Ranks:
         found, started = MPI.COMM_WORLD.Get_size(), launched_ranks()
         if started is not None and started > 1 and found != started:
             raise LauncherMismatch(
-                f"the launcher started {started} ranks, but the MPI library sees {found}: mpirun belongs to another "
-                "MPI than mpi4py uses; install the matching one with pip install 'rfmpm[mpi]' and use its mpirun, "
-                "which lies beside this Python"
+                f"the launcher started {started} ranks, but the MPI library sees {found}: {_remedy()}"
             )
         if MPI.Query_thread() < MPI.THREAD_SERIALIZED:
             raise LauncherMismatch("this MPI library does not let a second thread communicate, which rank 0 needs")
         self.mpi, self.comm = MPI, MPI.COMM_WORLD.Dup()
         self.rank, self.size = self.comm.Get_rank(), found
+        self.size_here = self.comm.Split_type(MPI.COMM_TYPE_SHARED).Get_size()
         self._has_started = False
+
+    def in_words(self) -> str:
+        """Say who works, and what is wrong with their number."""
+        processors, ranks = os.cpu_count() or 1, f"{self.size} MPI rank{'s' if self.size > 1 else ''}"
+        if self.size_here > processors:
+            return f"{ranks}, {self.size_here} of them on the {processors} processors of this host (too many slow it)"
+        return ranks
 
     def follow(self, worker: Worker) -> None:
         """Work under rank 0, if it finds that there is something to do; returns when rank 0 has closed the crew.
@@ -84,20 +106,21 @@ class Ranks:
             worker.work(self.rank, self._claim)
         self._meet()
 
-    def lead(self, worker: Worker, dispatcher: Dispatcher) -> None:
+    def lead(self, worker: Worker, dispatcher: Dispatcher, renew: Callable[[], None]) -> None:
         """Let all ranks work, this one too, and serve them until the last one has ended.
 
         Args:
             worker: of this rank, prepared.
             dispatcher: of the work.
+            renew: called now and then, to keep the status up to date.
         """
         self._start(True)
-        desk = threading.Thread(target=self._serve, args=(dispatcher,), name="dispatcher")
+        desk = threading.Thread(target=self._serve, args=(dispatcher, renew), name="dispatcher")
         desk.start()
         try:
             worker.work(0, lambda report: dispatcher.answer(0, report))
         except BaseException:
-            dispatcher.stop()
+            dispatcher.stop("rank 0 could not go on")
             raise
         finally:
             desk.join()
@@ -113,12 +136,12 @@ class Ranks:
         for rank in range(1, self.size):
             self._send(is_to_work, rank, _START)
 
-    def _serve(self, dispatcher: Dispatcher) -> None:
+    def _serve(self, dispatcher: Dispatcher, renew: Callable[[], None]) -> None:
         # While this runs no other thread of rank 0 calls MPI.
         try:
             working = self.size - 1
             while working:
-                rank, report = self._receive_from_any(_CLAIM)
+                rank, report = self._receive_from_any(_CLAIM, renew)
                 answer = dispatcher.answer(rank, report)
                 if report.is_last:
                     working -= 1
@@ -128,7 +151,7 @@ class Ranks:
             self.comm.Abort(1)
             raise
 
-    def _claim(self, report: Report) -> int | None:
+    def _claim(self, report: Report) -> Task | None:
         self._send(report, 0, _CLAIM)
         return None if report.is_last else self._receive(0, _ANSWER)
 
@@ -140,9 +163,14 @@ class Ranks:
         wait_until(lambda: self.comm.iprobe(rank, tag))
         return self.comm.recv(source=rank, tag=tag)
 
-    def _receive_from_any(self, tag: int):
+    def _receive_from_any(self, tag: int, meanwhile: Callable[[], None]):
         status = self.mpi.Status()
-        wait_until(lambda: self.comm.iprobe(self.mpi.ANY_SOURCE, tag, status))
+
+        def has_come() -> bool:
+            meanwhile()
+            return self.comm.iprobe(self.mpi.ANY_SOURCE, tag, status)
+
+        wait_until(has_come)
         return status.Get_source(), self.comm.recv(source=status.Get_source(), tag=tag)
 
     def _meet(self) -> None:

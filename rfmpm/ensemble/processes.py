@@ -2,11 +2,12 @@
 
 import multiprocessing
 import os
-import signal
+from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection, wait
 
 from rfmpm.ensemble.dispatcher import Dispatcher
+from rfmpm.ensemble.isolation import cause
 from rfmpm.ensemble.worker import Report, Worker
 
 POLL = 0.2  # seconds between two looks at the signals
@@ -38,26 +39,40 @@ class Processes:
             raise ValueError(f"workers = {workers}: at least 1 is needed")
         self.size = workers or available_processors()
 
-    def lead(self, worker: Worker, dispatcher: Dispatcher) -> None:
-        """Start the workers and serve them until the last one has ended.
+    def in_words(self) -> str:
+        """Say who works, and what is wrong with their number."""
+        processors = available_processors()
+        workers = f"{self.size} local process{'es' if self.size > 1 else ''}"
+        if self.size > processors:
+            return f"{workers} on {processors} processors (more than there are only slows them; leave out --workers)"
+        return f"{workers} on {processors} processors"
+
+    def lead(self, worker: Worker, dispatcher: Dispatcher, renew: Callable[[], None]) -> None:
+        """Start the workers and serve them until the last one has ended; one that dies is replaced.
 
         Args:
             worker: prepared; forked processes share its memory.
             dispatcher: of the work.
+            renew: called now and then, to keep the status up to date.
         """
         # fork shares what the parent has prepared; where it is missing the workers prepare from the store
         is_forking = "fork" in multiprocessing.get_all_start_methods()
         context = multiprocessing.get_context("fork" if is_forking else "spawn")
         members: dict[Connection, tuple[int, multiprocessing.Process]] = {}
+
+        def engage(rank: int) -> None:
+            here, there = context.Pipe()
+            inherited = [*members, here] if is_forking else []
+            # no daemon: those may have no children, and a realisation may need a process of its own
+            process = context.Process(target=_live, args=(worker, rank, there, inherited))
+            process.start()
+            there.close()  # so that the end of the process ends the connection
+            members[here] = (rank, process)
+
         try:
             for rank in range(min(self.size, len(dispatcher.todo))):
-                here, there = context.Pipe()
-                inherited = [*members, here] if is_forking else []
-                process = context.Process(target=_live, args=(worker, rank, there, inherited), daemon=True)
-                process.start()
-                there.close()  # so that the end of the process ends the connection
-                members[here] = (rank, process)
-            self._serve(members, worker, dispatcher)
+                engage(rank)
+            self._serve(members, engage, worker, dispatcher, renew)
         finally:
             for connection, (_, process) in members.items():
                 connection.close()
@@ -67,9 +82,10 @@ class Processes:
     def close(self) -> None:
         """Nothing is left to be closed."""
 
-    def _serve(self, members: dict, worker: Worker, dispatcher: Dispatcher) -> None:
-        signals_passed_on, ended = 0, set()
+    def _serve(self, members: dict, engage: Callable, worker: Worker, dispatcher: Dispatcher, renew: Callable) -> None:
+        signals_passed_on, ended, next_rank = 0, set(), len(members)
         while members:
+            renew()
             for connection in wait(list(members), timeout=POLL):
                 rank, process = members[connection]
                 try:
@@ -80,11 +96,12 @@ class Processes:
                     del members[connection]
                     connection.close()
                     process.join()
-                    if rank not in ended:
-                        dispatcher.lost(rank, _cause(process.exitcode))
+                    if rank not in ended and dispatcher.lost(rank, cause(process.exitcode)):
+                        engage(next_rank)  # another rank: the marker of the dead one is evidence
+                        next_rank += 1
             if worker.stop.count > signals_passed_on:
                 signals_passed_on = worker.stop.count
-                dispatcher.stop()
+                dispatcher.stop(worker.stop.reason)
                 for _, process in members.values():
                     process.terminate() if signals_passed_on == 1 else process.kill()
 
@@ -100,10 +117,3 @@ def _live(worker: Worker, rank: int, connection: Connection, inherited: list[Con
         return None
 
     worker.work(rank, claim)
-
-
-def _cause(exit_code: int | None) -> str:
-    if exit_code is not None and exit_code < 0:
-        with suppress(ValueError):
-            return f"killed by {signal.Signals(-exit_code).name}"
-    return f"exit code {exit_code}"

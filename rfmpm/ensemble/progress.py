@@ -52,7 +52,8 @@ class Progress:
         """Write the state as one line; arguments as for `show`."""
         left = self.seconds_left(done)
         time_left = "time left unknown" if left is None else f"{timedelta(seconds=round(left))} left"
-        return f"{self.before + done}/{self.total} realisations, {self._rate(done)}, {time_left}, {failed} failed"
+        rate = f"{self.per_minute(done):.3g} per minute"
+        return f"{self.before + done}/{self.total} realisations, {rate}, {time_left}, {failed} failed"
 
     def seconds_left(self, done: int) -> float | None:
         """Estimate the time left from the rate of this run.
@@ -67,9 +68,9 @@ class Progress:
             return None
         return (self.total - self.before - done) * (time.monotonic() - self.started) / done
 
-    def _rate(self, done: int) -> str:
-        per_minute = 60.0 * done / max(time.monotonic() - self.started, 1e-9)
-        return f"{per_minute:.3g} per minute"
+    def per_minute(self, done: int) -> float:
+        """Rate of this run [1/min]; argument as for `seconds_left`."""
+        return 60.0 * done / max(time.monotonic() - self.started, 1e-9)
 
     def _show_bar(self, done: int, failed: int) -> None:
         if self.bar is None:

@@ -1,27 +1,23 @@
 """Carries out a campaign: takes the folder, runs what is missing, merges the segments into the one dataset."""
 
 import shutil
+import time
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rfmpm import results
 from rfmpm.ensemble import folder, segments
-from rfmpm.ensemble.dispatcher import Dispatcher
+from rfmpm.ensemble.campaign import Campaign
 from rfmpm.ensemble.mpi import Ranks, launched_ranks
 from rfmpm.ensemble.processes import Processes
-from rfmpm.ensemble.progress import Progress
-from rfmpm.ensemble.worker import Abandoned, Worker
-from rfmpm.estimators.monte_carlo import MonteCarlo
-from rfmpm.variables import failed_row
+from rfmpm.ensemble.stop import LOOK_EVERY, Stop
+from rfmpm.ensemble.worker import Worker
 
 if TYPE_CHECKING:
     import xarray as xr
 
-FATAL_STARTS = 3  # a realisation that took so many workers with it is given up
-
-
-class Interrupted(RuntimeError):
-    """A campaign that ended early; what is finished is on disk and the same command continues it."""
+LOOKS = 100.0  # per second at the file STOP, by all ranks together: a shared file system bears no more
 
 
 def run(
@@ -31,6 +27,10 @@ def run(
     workers: int | None = None,
     fresh: bool = False,
     progress: bool = True,
+    *,
+    allow_failed: float | None = None,
+    wall_time: float | None = None,
+    log_level: str = "warning",
 ) -> "xr.Dataset | None":
     """Run a campaign, or what is missing of it, and gather its rows in ensemble.nc.
 
@@ -43,6 +43,9 @@ def run(
         workers: local processes; as many as there are processors if None.
         fresh: discard the results the folder holds.
         progress: show progress on standard error.
+        allow_failed: share of failed realisations that is allowed; the study's `failures.max_failed_fraction` if None.
+        wall_time: time after which the campaign ends to be continued later [s]; no limit if None.
+        log_level: of logs/rank-<rank>.log.
 
     Returns:
         The first `realisations` rows; None on every MPI rank but 0.
@@ -50,18 +53,30 @@ def run(
     Raises:
         FolderMismatch: if the folder cannot take this campaign; nothing in it was changed.
         LauncherMismatch: if mpirun and the MPI library do not belong together.
-        Interrupted: if it ended early, by a signal or because workers were lost.
+        Interrupted: if it ended early, by a signal, by its wall time or because workers were lost.
+        CampaignFailed: if the failure policy of the study ended it.
         ValueError: for less than one realisation or worker, or for workers under several MPI ranks.
     """
+    deadline = inf if wall_time is None else time.monotonic() + wall_time
     if realisations is not None:
         study = study.with_changes({"study.realisations": realisations})
-    crew, worker = _crew(workers), Worker(study, Path(directory))
+    crew = _crew(workers)
+    stop = Stop(deadline, max(LOOK_EVERY, crew.size / LOOKS))
+    worker = Worker(study, Path(directory), stop, log_level)
     if crew.rank > 0:
+        stop.file = worker.directory / folder.STOP_FILE
         crew.follow(worker)
         return None
+    allowed = study.failures.max_failed_fraction if allow_failed is None else allow_failed
     try:
-        with worker.stop.listening(), folder.opened(worker.directory, study, fresh) as journal:
-            return _campaign(crew, worker, journal, fresh, progress)
+        with stop.listening(), folder.opened(worker.directory, study, fresh) as journal:
+            campaign = Campaign(crew, worker, journal, allowed, progress)
+            campaign.begin(fresh)
+            with campaign.posted():
+                campaign.carry_out()
+                rows = segments.read_all(worker.directory, study, journal)
+                total = study.study.realisations
+                return _finish(study, worker.directory, [rows[index] for index in range(total)], journal)
     finally:
         crew.close()
 
@@ -75,67 +90,11 @@ def _crew(workers: int | None) -> Processes | Ranks:
     return Ranks()
 
 
-def _campaign(crew: Processes | Ranks, worker: Worker, journal, fresh: bool, is_shown: bool) -> "xr.Dataset":
-    study, directory = worker.study, worker.directory
-    total = study.study.realisations
-    rows = segments.read_all(directory, study, journal)
-    todo = MonteCarlo(total).plan(rows)
-    journal.write("start", fresh=fresh, realisations=total, todo=len(todo), workers=crew.size, **_origin(study))
-    todo = _give_up(todo, worker, journal)
-    losses = []
-    if todo:
-        losses = _carry_out(crew, worker, journal, todo, Progress(total, total - len(todo), is_shown))
-    rows = segments.read_all(directory, study, journal)
-    missing = MonteCarlo(total).plan(rows)
-    if missing:
-        journal.write("stop", complete=False, missing=len(missing))
-        raise Interrupted(_what_is_left(total, missing, losses))
-    return _finish(study, directory, [rows[index] for index in range(total)], journal)
-
-
-def _origin(study) -> dict[str, str]:
-    return {"physics_hash": study.physics_hash, "source_hash": results.source_hash(), **results.versions()}
-
-
-def _give_up(todo: list[int], worker: Worker, journal) -> list[int]:
-    """Write rows with status lost for realisations that kill their workers; returns the others."""
-    fatal = {index for index, count in journal.fatal_starts().items() if count >= FATAL_STARTS}
-    writer = segments.SegmentWriter(worker.directory, worker.study, 0)
-    reason = f"{FATAL_STARTS} workers died in this realisation"
-    written = []
-    for index in sorted(fatal.intersection(todo)):
-        written += writer.add(failed_row(worker.study, index, "lost", reason))
-    for segment in written + writer.flush():
-        journal.write("segment", rank=0, **segment)
-    return [index for index in todo if index not in fatal]
-
-
-def _carry_out(crew: Processes | Ranks, worker: Worker, journal, todo: list[int], progress: Progress) -> list[str]:
-    from threadpoolctl import threadpool_limits
-
-    try:
-        with threadpool_limits(limits=1):
-            worker.prepare()
-    except Abandoned:
-        return ["a signal asked for the end"]
-    with progress:
-        dispatcher = Dispatcher(todo, journal, progress)
-        crew.lead(worker, dispatcher)
-    return [*dispatcher.losses, *(["a signal asked for the end"] if worker.stop.is_requested else [])]
-
-
-def _what_is_left(total: int, missing: list[int], losses: list[str]) -> str:
-    reasons = "".join(f"\n  {loss}" for loss in losses)
-    return (
-        f"stopped early with {total - len(missing)} of {total} realisations; "
-        f"run the same command again to continue{reasons}"
-    )
-
-
 def _finish(study, directory: Path, rows: list[segments.Row], journal) -> "xr.Dataset":
     path = directory / results.ENSEMBLE_FILE
     merged = results.dataset(rows, study, {"start": journal.started(), "end": journal.ended()})
     results.write_dataset(path, merged)
-    shutil.rmtree(directory / folder.WORK, ignore_errors=True)
+    for name in (folder.WORK, folder.RUNNING):
+        shutil.rmtree(directory / name, ignore_errors=True)
     journal.write("stop", complete=True, content_hash=merged.attrs["content_hash"])
     return results.open_ensemble(path)

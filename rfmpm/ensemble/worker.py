@@ -1,86 +1,65 @@
-"""What one worker does, in whatever process or rank it lives, and how it is asked to stop."""
+"""What one worker does, in whatever process or rank it lives."""
 
-import signal
-import threading
+import logging
+import platform
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from rfmpm.ensemble.folder import WORK
+from rfmpm.ensemble.folder import LOGS, WORK
+from rfmpm.ensemble.isolation import ChildDied, run_apart
+from rfmpm.ensemble.markers import Marker, Task
 from rfmpm.ensemble.segments import Row, SegmentWriter
-from rfmpm.variables import failed_row
+from rfmpm.ensemble.stop import Abandoned, Stop
+from rfmpm.variables import STATUS, failed_row
 
-SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGUSR1") if hasattr(signal, name)]
+ISOLATED_FROM = 3  # the start from which a realisation gets a process of its own
+REPEATABLE = frozenset({STATUS["crashed"], STATUS["timeout"]})  # may end otherwise the next time
+STATUS_NAMES = {code: name for name, code in STATUS.items()}
+
+log = logging.getLogger("rfmpm.worker")
 
 
-class Abandoned(BaseException):
-    """Raised inside a realisation that is given up; a BaseException so that nobody takes it for a failure."""
+@dataclass(frozen=True)
+class Ended:
+    """How a realisation ended."""
 
-
-class Stop:
-    """Notices the signals that ask for a clean end."""
-
-    def __init__(self):
-        self.count = 0
-        self._is_interruptible = False
-
-    @property
-    def is_requested(self) -> bool:
-        return self.count > 0
-
-    def __call__(self, *_) -> None:
-        self.count += 1
-        if self._is_interruptible:
-            self._is_interruptible = False  # once: what follows is the writing of finished rows
-            raise Abandoned
-
-    @contextmanager
-    def listening(self) -> Iterator[None]:
-        """Take the signals while the body runs; outside the main thread, which alone may, this does nothing."""
-        if threading.current_thread() is not threading.main_thread():
-            yield
-            return
-        earlier = {number: signal.signal(number, self) for number in SIGNALS}
-        try:
-            yield
-        finally:
-            for number, handler in earlier.items():
-                signal.signal(number, handler)
-
-    @contextmanager
-    def interruptible(self) -> Iterator[None]:
-        """Let a signal raise Abandoned in the body; at once if one came before."""
-        try:
-            self._is_interruptible = True
-            if self.is_requested:
-                raise Abandoned
-            yield
-        finally:
-            self._is_interruptible = False
+    realisation: int
+    status: int
+    reason: str
+    wall_time: float  # [s], of all its repetitions
 
 
 @dataclass(frozen=True)
 class Report:
     """What a worker tells when it asks for the next realisation, and when it ends."""
 
-    status: int | None = None  # of the realisation it has just finished
+    ended: Ended | None = None  # the realisation it has just finished
     segments: list[dict] = field(default_factory=list)  # written since its last report
+    host: str = ""  # told once
     is_last: bool = False
-    is_stopping: bool = False  # a signal asked for the end
+    stopping: str = ""  # what asked for the end
     error: str = ""  # why the worker cannot go on
 
 
-Claim = Callable[[Report], int | None]
+Claim = Callable[[Report], Task | None]
 
 
 class Worker:
-    """The one worker loop; back ends differ in how `claim` reaches whoever hands out the realisations."""
+    """The one worker loop; back ends differ in how `claim` reaches whoever hands out the realisations.
 
-    def __init__(self, study, directory: Path):
+    Args:
+        study: the study.
+        directory: of the campaign.
+        stop: what asks for the end; signals alone if None.
+        log_level: of logs/rank-<rank>.log.
+    """
+
+    def __init__(self, study, directory: Path, stop: Stop | None = None, log_level: str = "warning"):
         self.study, self.directory = study, directory
-        self.stop = Stop()
+        self.stop, self.log_level = stop or Stop(), log_level
         self.prepared = None
 
     def __getstate__(self) -> dict:
@@ -90,7 +69,7 @@ class Worker:
         """Compile, build the scene and find or make the factor of the field; once per process.
 
         Raises:
-            Abandoned: if a signal asked for the end.
+            Abandoned: if something asked for the end.
         """
         from rfmpm import realisation
 
@@ -100,36 +79,76 @@ class Worker:
                 realisation.compile_kernels(self.prepared)
 
     def work(self, rank: int, claim: Claim) -> None:
-        """Run what `claim` hands out until there is nothing left or a signal comes; every finished row is written.
+        """Run what `claim` hands out until nothing is left or something asks for the end; finished rows are written.
 
         Args:
             rank: of this worker.
-            claim: sends a report and returns the next realisation or None.
+            claim: sends a report and returns the next task or None.
         """
         from threadpoolctl import threadpool_limits
 
-        writer = SegmentWriter(self.directory, self.study, rank)
+        writer, marker = SegmentWriter(self.directory, self.study, rank), Marker(self.directory, rank)
         error = ""
         try:
-            # A signal abandons the realisation at hand to a later run; the last report says so.
-            with suppress(Abandoned), self.stop.listening(), threadpool_limits(limits=1):
+            # Asked to end, it abandons the realisation at hand to a later run; the last report says so.
+            with suppress(Abandoned), self.stop.listening(), threadpool_limits(limits=1), self._log_of(rank):
                 self.prepare()
-                self._loop(writer, claim)
+                self._loop(writer, marker, claim)
         except Exception as failure:
             error = _described(failure)
+        segments: list[dict] = []
         try:
             segments = writer.flush()
+            marker.remove()
         except OSError as failure:
-            segments, error = [], error or _described(failure)
-        claim(Report(segments=segments, is_last=True, is_stopping=self.stop.is_requested, error=error))
+            error = error or _described(failure)
+        claim(Report(segments=segments, is_last=True, stopping=self.stop.reason, error=error))
 
-    def _loop(self, writer: SegmentWriter, claim: Claim) -> None:
-        report = Report()
-        while (index := claim(report)) is not None:
-            row = self._run(index)
-            report = Report(status=int(row["status"]), segments=writer.add(row))
+    def _loop(self, writer: SegmentWriter, marker: Marker, claim: Claim) -> None:
+        report = Report(host=platform.node())
+        while (task := claim(report)) is not None:
+            started = time.perf_counter()
+            marker.put(task)
+            row = self._run(task)
+            ended = Ended(task.realisation, int(row["status"]), str(row["status_reason"]), _since(started))
+            name = STATUS_NAMES[ended.status]
+            log.info("realisation %d: %s in %.3g s %s", ended.realisation, name, ended.wall_time, ended.reason)
+            report = Report(ended, writer.add(row))
 
-    def _run(self, index: int) -> Row:
+    def _run(self, task: Task) -> Row:
+        if task.attempt < ISOLATED_FROM:
+            return self.run_here(task.realisation)
+        log.warning("realisation %d: start %d, in a process of its own", task.realisation, task.attempt)
+        started = time.perf_counter()
+        try:
+            with self.stop.interruptible():
+                return run_apart(self.study, self.directory, task.realisation)
+        except ChildDied as death:
+            reason = f"its process ended in each of {task.attempt} starts, the last one alone in a process: {death}"
+            return failed_row(self.study, task.realisation, "crashed", reason, wall_time=_since(started))
+
+    def run_here(self, index: int) -> Row:
+        """Run a realisation in this process, repeated where the study asks for it and it may end otherwise.
+
+        Args:
+            index: of the realisation.
+
+        Returns:
+            Its row.
+
+        Raises:
+            Abandoned: if something asked for the end.
+        """
+        policy = self.study.failures
+        times = 1 + (policy.retries if policy.action == "retry" else 0)
+        for repetition in range(1, times + 1):
+            row = self._attempt(index)
+            if row["status"] not in REPEATABLE:
+                return row
+            log.warning("realisation %d, try %d of %d: %s", index, repetition, times, row["status_reason"])
+        return row if times == 1 else {**row, "status_reason": f"{row['status_reason']}; tried {times} times"}
+
+    def _attempt(self, index: int) -> Row:
         from rfmpm import realisation
 
         started = time.perf_counter()
@@ -137,9 +156,35 @@ class Worker:
             with self.stop.interruptible():
                 return realisation.run(self.prepared, index)
         except Exception as failure:
-            return failed_row(
-                self.study, index, "crashed", _described(failure), wall_time=time.perf_counter() - started
-            )
+            return failed_row(self.study, index, "crashed", _described(failure), wall_time=_since(started))
+
+    @contextmanager
+    def _log_of(self, rank: int) -> Iterator[None]:
+        handler = LateFile(self.directory / LOGS / f"rank-{rank:05d}.log", encoding="utf-8", delay=True)
+        handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
+        earlier = log.level, log.propagate
+        log.setLevel(self.log_level.upper())
+        log.propagate = False
+        log.addHandler(handler)
+        try:
+            yield
+        finally:
+            log.removeHandler(handler)
+            log.setLevel(earlier[0])
+            log.propagate = earlier[1]
+            handler.close()
+
+
+class LateFile(logging.FileHandler):
+    """A log file that appears, with its folder, when there is something to say."""
+
+    def _open(self):
+        Path(self.baseFilename).parent.mkdir(exist_ok=True)
+        return super()._open()
+
+
+def _since(started: float) -> float:
+    return time.perf_counter() - started
 
 
 def _described(failure: Exception) -> str:

@@ -188,17 +188,20 @@ class MonteCarlo:
             raise ValueError(f"realisations = {realisations}: at least 1 is needed")
         self.realisations = realisations
 
-    def plan(self, done: Collection[int]) -> list[int]:
+    def plan(self, done: Collection[int]) -> list[range]:
         """Name the realisations that are still to be run.
 
         Args:
             done: indices that have a row already, in any order.
 
         Returns:
-            The missing indices of 0 to realisations - 1, in ascending order.
+            The missing indices of 0 to realisations - 1, in ascending order, as ranges.
         """
-        finished = {int(index) for index in done}
-        return [index for index in range(self.realisations) if index not in finished]
+        present = np.unique(np.asarray(done if isinstance(done, np.ndarray) else list(done), int))
+        present = present[(present >= 0) & (present < self.realisations)]
+        edges = np.concatenate([[-1], present, [self.realisations]])
+        before = np.flatnonzero(np.diff(edges) > 1)
+        return [range(int(edges[i]) + 1, int(edges[i + 1])) for i in before]
 
     def estimate(self, values, limit: float, censored=None, confidence: float = 0.95) -> Estimate:
         """Estimate P(X > limit) from the first `realisations` values; arguments and result as in `exceedance`."""

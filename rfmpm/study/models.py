@@ -214,3 +214,20 @@ class Output(Table):
     surface_bin_m: Length | None = Field(
         None, description="Bin width of the final ground surface [m]; left out: no surface is kept"
     )
+
+
+class Failures(Table):
+    """[failures]: what a campaign does about realisations that fail; no result depends on it"""
+
+    action: Literal["record", "retry", "abort"] = Field(
+        "record",
+        description="record: keep the failed row and go on. retry: first repeat what could end otherwise (crashed by "
+        "an exception, timeout); a run that diverged or left the grid would do so again. abort: end at the first one",
+    )
+    retries: Annotated[int, Strict()] = Field(2, ge=1, le=100, description="How often one is repeated by retry")
+    max_failed_fraction: Annotated[Number, Field(ge=0, le=1)] = Field(
+        0.05, description="Share of all realisations beyond which failed ones end the campaign [1]"
+    )
+    realisation_time_limit_s: Positive | None = Field(
+        None, description="Elapsed time after which a realisation is given up as timeout [s]; left out: no limit"
+    )

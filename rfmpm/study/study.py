@@ -21,6 +21,7 @@ from rfmpm.study.models import (
     Boundary,
     Campaign,
     Discretisation,
+    Failures,
     FrictionalMaterial,
     Geometry,
     Material,
@@ -36,6 +37,7 @@ NOT_PHYSICS = (
     ("output", "directory"),
     ("quantities", "run_out_limit_m"),
     ("quantities", "inundation_depth_m"),
+    ("failures",),
 )
 
 
@@ -63,6 +65,7 @@ class Study(Table):
     time: Time
     quantities: Quantities = Quantities()
     output: Output
+    failures: Failures = Failures()
 
     def __init__(self, /, **tables: Any):
         data = plain(tables)
@@ -85,8 +88,8 @@ class Study(Table):
     def physics_hash(self) -> str:
         """SHA-256 (hex) of everything that a realisation's result depends on; equal for equal physics."""
         content = self.model_dump(exclude_none=True)
-        for table, key in NOT_PHYSICS:
-            del content[table][key]
+        for *tables, key in NOT_PHYSICS:
+            del (content[tables[0]] if tables else content)[key]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
     def to_toml(self) -> str:

@@ -238,3 +238,18 @@ def test_numerical_failure_is_a_row_with_a_status_and_no_quantities(prepared):
     assert row["step_count"] >= 1
     assert row["realisation"] == 0
     assert COORDINATES["realisation"].name in row
+
+
+def test_time_limit_makes_a_row_that_says_so(study):
+    limited = prepare(study.with_changes({"failures.realisation_time_limit_s": 1e-9}))
+    row = run(limited, 2)
+    assert (row["status"], row["realisation"]) == (STATUS["timeout"], 2)
+    assert row["status_reason"] == "took longer than failures.realisation_time_limit_s = 1e-09 s"
+    assert isnan(row["run_out"])
+    assert row["wall_time"] > 0.0
+    assert simulate(limited, 2).status != "timeout"  # a person who looks at one may take the time
+
+
+def test_time_limit_that_is_not_reached_changes_no_bit(prepared, study):
+    limited = prepare(study.with_changes({"failures.realisation_time_limit_s": 1e9}))
+    np.testing.assert_equal(without_time(run(limited, 2)), without_time(run(prepared, 2)))

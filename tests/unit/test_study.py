@@ -103,11 +103,14 @@ def test_study_is_immutable_and_travels_between_processes(study):
 
 
 @pytest.mark.parametrize(
-    ("table", "key", "value"),
-    [(*path, value) for path, value in zip(NOT_PHYSICS, ["other", 7, "elsewhere", 2.0, 0.3], strict=True)],
+    ("path", "value"),
+    [
+        (".".join(path), value)
+        for path, value in zip(NOT_PHYSICS, ["other", 7, "elsewhere", 2.0, 0.3, {"action": "abort"}], strict=True)
+    ],
 )
-def test_what_does_not_change_a_realisation_does_not_change_the_hash(study, table, key, value):
-    assert study.with_changes({f"{table}.{key}": value}).physics_hash == study.physics_hash
+def test_what_does_not_change_a_realisation_does_not_change_the_hash(study, path, value):
+    assert study.with_changes({path: value}).physics_hash == study.physics_hash
 
 
 @pytest.mark.parametrize(
@@ -231,6 +234,10 @@ REFUSED = {
     "quantities.inundation_depth_m": [0, -1, INF, NAN],
     "output.directory": ["", 3],
     "output.surface_bin_m": [0, -1, INF, NAN, 1e-9],
+    "failures.action": ["ignore", True],
+    "failures.retries": [0, -1, 2.0, 101],
+    "failures.max_failed_fraction": [-0.1, 1.1, NAN, "5 %"],
+    "failures.realisation_time_limit_s": [0, -1, INF, NAN],
 }
 
 

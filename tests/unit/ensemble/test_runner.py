@@ -9,7 +9,8 @@ import pytest
 
 from rfmpm import ensemble, realisation, results
 from rfmpm.ensemble import segments
-from rfmpm.variables import STATUS, active_variables
+from rfmpm.ensemble.worker import Worker
+from rfmpm.variables import STATUS, active_variables, failed_row
 
 REALISATIONS = 12
 
@@ -47,7 +48,7 @@ def test_every_row_is_there_in_order_with_every_variable(study, reference):
 def test_what_the_folder_holds_afterwards(study, tmp_path):
     found = run(study, tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {
-        ".lock", "ensemble.nc", "journal.jsonl", "rfmpm.log", "segments", "study.toml",
+        ".lock", "ensemble.nc", "journal.jsonl", "rfmpm.log", "segments", "status.json", "study.toml",
     }  # fmt: skip
     assert f"realisations = {REALISATIONS}" in (tmp_path / "study.toml").read_text()
     assert found.identical(results.open_ensemble(tmp_path))
@@ -84,7 +85,7 @@ def test_exception_becomes_a_crashed_row(study, reference, tmp_path, monkeypatch
         return real_run(prepared, index)
 
     monkeypatch.setattr(realisation, "run", sometimes)
-    found = run(study, tmp_path, 4, workers=2)
+    found = run(study, tmp_path, 4, workers=2, allow_failed=0.25)
     np.testing.assert_array_equal(found["status"].values == STATUS["crashed"], [False, False, True, False])
     assert str(found["status_reason"].values[2]) == "ZeroDivisionError: a reason"
     assert np.isnan(found["run_out"].values[2])
@@ -92,22 +93,45 @@ def test_exception_becomes_a_crashed_row(study, reference, tmp_path, monkeypatch
     np.testing.assert_array_equal(found["run_out"].values[[0, 1, 3]], reference["run_out"].values[[0, 1, 3]])
 
 
-def test_realisation_that_kills_its_workers_is_given_up_after_three_starts(study, reference, tmp_path, monkeypatch):
+def kill_in(monkeypatch, index, times):
+    """Let the workers that run a realisation be killed, `times` times; a file counts, since they are processes."""
     real_run = realisation.run
 
-    def deadly(prepared, index):
-        if index == 1:
+    def deadly(prepared, i):
+        if i == index and len(list(times[0].glob("death-*"))) < times[1]:
+            (times[0] / f"death-{os.getpid()}").touch()
             os.kill(os.getpid(), signal.SIGKILL)
-        return real_run(prepared, index)
+        return real_run(prepared, i)
 
     monkeypatch.setattr(realisation, "run", deadly)
-    for _ in range(3):
-        with pytest.raises(ensemble.Interrupted, match=r"realisation 1: killed by SIGKILL") as early:
-            run(study, tmp_path, 4, workers=2)
-        assert "run the same command again" in str(early.value)
-    found = run(study, tmp_path, 4, workers=2)
-    np.testing.assert_array_equal(found["status"].values == STATUS["lost"], [False, True, False, False])
-    np.testing.assert_array_equal(found["run_out"].values[[0, 2, 3]], reference["run_out"].values[[0, 2, 3]])
+
+
+def test_worker_that_dies_is_replaced_and_the_campaign_ends_complete(study, reference, tmp_path, monkeypatch):
+    (tmp_path / "deaths").mkdir()
+    kill_in(monkeypatch, 1, (tmp_path / "deaths", 1))
+    found = run(study, tmp_path / "results", workers=1)
+    assert results.content_hash(found) == results.content_hash(reference)
+    (start,) = events(tmp_path / "results", "unfinished_start")
+    assert start["realisation"] == 1
+    assert [event["realisation"] for event in events(tmp_path / "results", "worker_lost")] == [1]
+    assert len(list((tmp_path / "deaths").iterdir())) == 1
+
+
+def test_third_start_is_made_in_a_process_of_its_own(study, reference, tmp_path, monkeypatch):
+    (tmp_path / "deaths").mkdir()
+    kill_in(monkeypatch, 1, (tmp_path / "deaths", 9))  # the child, a new program, is not told to die
+    found = run(study, tmp_path / "results", workers=2)
+    assert results.content_hash(found) == results.content_hash(reference)
+    assert len(list((tmp_path / "deaths").iterdir())) == 2
+    (log,) = (tmp_path / "results" / "logs").iterdir()
+    assert "realisation 1: start 3, in a process of its own" in log.read_text()
+
+
+def test_workers_that_cannot_even_begin_end_the_campaign(study, tmp_path, monkeypatch):
+    monkeypatch.setattr(Worker, "work", lambda *_: os._exit(3))
+    with pytest.raises(ensemble.Interrupted, match="worker 0 died: exit code 3") as early:
+        run(study, tmp_path, 2, workers=1)
+    assert "workers die and nothing gets done" in str(early.value)
 
 
 def test_worker_that_cannot_write_stops_the_campaign_with_its_reason(study, tmp_path, monkeypatch):
@@ -157,3 +181,102 @@ def test_signal_handlers_are_given_back(study, tmp_path):
     before = signal.getsignal(signal.SIGTERM)
     run(study, tmp_path, 1)
     assert signal.getsignal(signal.SIGTERM) is before
+
+
+# --- the failure policy of the study
+
+
+def policy(study, **keys):
+    return study.with_changes({f"failures.{key}": value for key, value in keys.items()})
+
+
+def fail_first(monkeypatch, indices, times):
+    """Let realisations raise the first `times` times in a process."""
+    real_run, tries = realisation.run, dict.fromkeys(indices, 0)
+
+    def failing(prepared, index):
+        if index in tries:
+            tries[index] += 1
+            if tries[index] <= times:
+                raise MemoryError("no memory left")
+        return real_run(prepared, index)
+
+    monkeypatch.setattr(realisation, "run", failing)
+
+
+def test_retry_repeats_what_crashed_and_gets_the_same_row(study, reference, tmp_path, monkeypatch):
+    fail_first(monkeypatch, [1, 3], 2)
+    found = run(policy(study, action="retry", retries=2), tmp_path)
+    assert results.content_hash(found) == results.content_hash(reference)
+    assert "realisation 3, try 2 of 3: MemoryError: no memory left" in (tmp_path / "logs/rank-00000.log").read_text()
+
+
+def test_retry_gives_up_in_the_end_and_says_how_often_it_tried(study, tmp_path, monkeypatch):
+    fail_first(monkeypatch, [1], 9)
+    found = run(policy(study, action="retry", retries=3), tmp_path, 4, allow_failed=1.0)
+    assert str(found["status_reason"].values[1]) == "MemoryError: no memory left; tried 4 times"
+
+
+def test_retry_does_not_repeat_what_would_end_the_same(study, tmp_path, monkeypatch):
+    calls = []
+
+    def diverges(prepared, index):
+        calls.append(index)
+        return failed_row(study, index, "diverged", "energy came from nothing")
+
+    worker = Worker(policy(study, action="retry"), tmp_path)
+    monkeypatch.setattr(realisation, "run", diverges)
+    assert worker.run_here(5)["status"] == STATUS["diverged"]
+    assert calls == [5]
+
+
+def test_abort_keeps_the_row_says_so_again_and_goes_on_under_another_policy(study, reference, tmp_path, monkeypatch):
+    fail_first(monkeypatch, [1], 1)
+    for _ in range(2):
+        with pytest.raises(ensemble.CampaignFailed, match="realisation 1 ended with status crashed: MemoryError"):
+            run(policy(study, action="abort"), tmp_path)
+        status = json.loads((tmp_path / "status.json").read_text())
+        assert (status["state"], status["failed"]) == ("failed", {"crashed": 1})
+        assert status["done"] < REALISATIONS
+    assert len(events(tmp_path, "segment")) == 1  # the second time nothing was run
+    found = run(study, tmp_path, allow_failed=0.2)
+    assert int((found["status"] == STATUS["crashed"]).sum()) == 1
+
+
+def test_too_many_failures_end_it_and_more_may_be_allowed(study, tmp_path, monkeypatch):
+    fail_first(monkeypatch, range(REALISATIONS), 1)
+    with pytest.raises(ensemble.CampaignFailed, match=r"3 of 12 realisations have failed.* \(3 crashed\)"):
+        run(policy(study, max_failed_fraction=2 / REALISATIONS), tmp_path)
+    assert not (tmp_path / "ensemble.nc").exists()
+    found = run(study, tmp_path, allow_failed=1.0)
+    assert int((found["status"] == STATUS["crashed"]).sum()) == REALISATIONS
+
+
+def test_time_limit_is_a_row_and_not_the_end(study, tmp_path):
+    found = run(policy(study, realisation_time_limit_s=1e-9), tmp_path, 3, allow_failed=1.0)
+    np.testing.assert_array_equal(found["status"], STATUS["timeout"])
+
+
+# --- the end of the wall time, the file STOP
+
+
+def test_wall_time_that_is_spent_ends_it_to_be_continued(study, reference, tmp_path):
+    with pytest.raises(ensemble.Interrupted, match="--wall-time"):
+        run(study, tmp_path, wall_time=1e-3)
+    assert json.loads((tmp_path / "status.json").read_text())["state"] == "stopped"
+    assert results.content_hash(run(study, tmp_path, wall_time=3600.0)) == results.content_hash(reference)
+
+
+def test_old_stop_file_is_removed_and_that_is_said(study, tmp_path, capsys):
+    run(study, tmp_path, 1)
+    (tmp_path / "STOP").touch()
+    ensemble.run(study, tmp_path, 2, 1)
+    assert not (tmp_path / "STOP").exists()
+    assert "removed the file STOP" in capsys.readouterr().err
+
+
+def test_who_works_is_said_and_too_many_workers_too(study, tmp_path, capsys):
+    ensemble.run(study, tmp_path, 1, 500)
+    assert "1 of 1 realisations to run, 500 local processes on" in (said := capsys.readouterr().err)
+    assert "leave out --workers" in said
+    assert "one thread each" in said

@@ -3,7 +3,7 @@ import signal
 
 import pytest
 
-from rfmpm.ensemble.worker import Abandoned, Stop
+from rfmpm.ensemble.stop import Abandoned, Stop
 
 
 def test_signal_inside_a_realisation_abandons_it():

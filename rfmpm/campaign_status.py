@@ -1,0 +1,128 @@
+"""How far a campaign is, for whoever sees its folder: the file status.json, and what may be said from it."""
+
+import json
+import os
+import platform
+import tomllib
+from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+STATUS_FILE = "status.json"
+STUDY_FILE = "study.toml"
+ENSEMBLE_FILE = "ensemble.nc"
+SEGMENTS = "segments"
+RUNNING, STOPPED, COMPLETE, FAILED = "running", "stopped", "complete", "failed"
+QUIET = 60.0  # seconds without news after which a campaign that says it runs is doubted
+
+
+def now() -> str:
+    """The time, ISO 8601 with its offset from UTC."""
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
+
+
+def write(directory: Path, content: Mapping[str, Any]) -> None:
+    """Replace status.json at once, so that a reader never sees half of it.
+
+    Args:
+        directory: of the campaign.
+        content: whatever it says.
+
+    Raises:
+        OSError: if it cannot be written.
+    """
+    path = Path(directory) / STATUS_FILE
+    temporary = path.with_name(f".{STATUS_FILE}.new")
+    temporary.write_text(json.dumps(content, indent=1), encoding="utf-8")
+    os.replace(temporary, path)
+
+
+def read(directory: Path) -> dict[str, Any]:
+    """Read status.json and add what this host can tell of it; nothing is changed.
+
+    Args:
+        directory: of the campaign.
+
+    Returns:
+        Its content, with "doubt": why a campaign that says it runs may not, or empty.
+
+    Raises:
+        FileNotFoundError: if there is none.
+        ValueError: if it is not one of ours.
+    """
+    path = Path(directory) / STATUS_FILE
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        updated = datetime.fromisoformat(content["updated"])
+    except (ValueError, KeyError, TypeError) as error:
+        raise ValueError(f"{path}: is not the status of a campaign ({error})") from error
+    return {**content, "doubt": _doubt(content, updated) if content.get("state") == RUNNING else ""}
+
+
+def _doubt(content: Mapping[str, Any], updated: datetime) -> str:
+    if content.get("host") == platform.node() and not _is_alive(content.get("pid")):
+        return f"its process {content.get('pid')} is gone; no sign of life since {content['updated']}"
+    silent = (datetime.now(UTC) - updated).total_seconds()
+    if silent > QUIET:
+        return f"no sign of life since {content['updated']}, {silent:.0f} s ago by the clock of this host"
+    return ""
+
+
+def _is_alive(pid: Any) -> bool:
+    try:
+        os.kill(int(pid), 0)
+    except (ProcessLookupError, TypeError, ValueError):
+        return False
+    except OSError:
+        return True
+    return True
+
+
+def estimate_so_far(directory: Path) -> dict[str, Any] | None:
+    """Estimate P(run-out > limit) from what is finished without a gap in the indices.
+
+    What is finished beyond a gap was finished because it was quick, and is no fair sample. The files are not checked
+    against their hashes.
+
+    Args:
+        directory: of the campaign.
+
+    Returns:
+        limit_m, value, lower, upper, confidence and n; None if nothing is finished without a gap.
+    """
+    import numpy as np
+
+    columns = list(_columns(Path(directory)))
+    if not columns:
+        return None
+    index, run_out, censored = (np.concatenate(parts) for parts in zip(*columns, strict=True))
+    index, first = np.unique(index, return_index=True)
+    n = int(np.sum(index == np.arange(index.size)))
+    if n == 0:
+        return None
+    from rfmpm.estimators import exceedance
+
+    limit = float(tomllib.loads((Path(directory) / STUDY_FILE).read_text("utf-8"))["quantities"]["run_out_limit_m"])
+    found = exceedance(run_out[first][:n], limit, censored[first][:n])
+    names = ("value", "lower", "upper", "confidence", "n")
+    return {"limit_m": limit, **{name: getattr(found, name) for name in names}}
+
+
+def _columns(directory: Path) -> Iterator[tuple]:
+    """Index, run-out (NaN where it failed) and whether that is a lower bound, of every readable file of rows."""
+    merged = directory / ENSEMBLE_FILE
+    paths = [*([merged] if merged.is_file() else []), *sorted((directory / SEGMENTS).glob("*.nc"))]
+    if not paths:
+        return
+    import netCDF4
+    import numpy as np
+
+    for path in paths:
+        try:
+            with netCDF4.Dataset(path) as stored:
+                run_out = np.ma.filled(stored["run_out"][:].astype(float), np.nan)
+                censored = np.ma.filled(stored["run_out_censored"][:], 0) == 1
+                yield np.asarray(stored["realisation"][:]), run_out, censored
+        except (OSError, IndexError, RuntimeError):  # torn, or put aside or merged this moment
+            continue

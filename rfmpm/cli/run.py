@@ -1,0 +1,108 @@
+"""`rfmpm run`: the campaign."""
+
+import re
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import typer
+
+from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY, end
+
+StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
+OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.")]
+UNITS = {"s": 1.0, "m": 60.0, "h": 3600.0, "d": 86400.0}
+
+
+def seconds_of(text: str) -> float:
+    """Read a time as people and batch systems write it.
+
+    Args:
+        text: seconds (3600), a number with a unit (90m, 6h, 1.5d), or a clock (5:30:00, 30:00, 1-12:00:00).
+
+    Returns:
+        Seconds.
+
+    Raises:
+        typer.BadParameter: if it is none of these, or nothing.
+    """
+    if found := re.fullmatch(r"(\d+(?:\.\d*)?)([smhd]?)", text.strip().lower()):
+        seconds = float(found[1]) * UNITS[found[2] or "s"]
+    elif found := re.fullmatch(r"(?:(\d+)-)?(?:(\d+):)?(\d+):(\d\d)", text.strip()):
+        days, hours, minutes, rest = (float(part or 0) for part in found.groups())
+        seconds = days * UNITS["d"] + hours * UNITS["h"] + minutes * UNITS["m"] + rest
+    else:
+        seconds = 0.0
+    if seconds <= 0.0:
+        raise typer.BadParameter(f"{text}: must be a time such as 3600 (seconds), 90m, 6h or 5:30:00")
+    return seconds
+
+
+def run(
+    study: StudyFile,
+    out: OutFolder = None,
+    realisations: Annotated[int | None, typer.Option(metavar="N", help="Instead of the study's number.")] = None,
+    seed: Annotated[int | None, typer.Option(metavar="S", help="Instead of the study's seed.")] = None,
+    workers: Annotated[int | None, typer.Option(min=1, metavar="N", help="Local processes; default: cores.")] = None,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Start anew instead of continuing.")] = False,
+    allow_failed: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0, max=1.0, metavar="SHARE", help="Failed realisations beyond it: exit 3. Default: the study's."
+        ),
+    ] = None,
+    wall_time: Annotated[
+        float | None,
+        typer.Option(
+            parser=seconds_of,
+            metavar="TIME",
+            help="End by then with exit 75, to be continued: 3600, 90m, 6h, 5:30:00. Give some minutes less than the "
+            "batch system does.",
+        ),
+    ] = None,
+    log_level: Annotated[
+        Literal["debug", "info", "warning", "error"],
+        typer.Option(help="Of the logs of the workers, DIR/logs/rank-*.log; info: a line for each realisation."),
+    ] = "warning",
+) -> None:
+    """Run the campaign, or continue what the folder holds of the same study."""
+    from rfmpm.study import load_study
+
+    given = {"study.realisations": realisations, "study.seed": seed}
+    settings = load_study(study).with_changes({path: value for path, value in given.items() if value is not None})
+    folder = out or Path(settings.output.directory)
+    options = {"fresh": fresh, "allow_failed": allow_failed, "wall_time": wall_time, "log_level": log_level}
+    dataset = _campaign(settings, folder, workers, options)
+    if dataset is None:
+        return  # another rank than the first
+    from rfmpm import report as reporting
+
+    typer.echo(f"dataset: {folder / 'ensemble.nc'}")
+    typer.echo(f"report:  {reporting.write(folder)}")
+    for line in reporting.summary_lines(dataset, settings):
+        typer.echo(line)
+    _end_if_too_many_failed(dataset, settings.failures.max_failed_fraction if allow_failed is None else allow_failed)
+
+
+def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[str, Any]) -> Any:
+    from rfmpm import ensemble
+    from rfmpm.ensemble.mpi import launched_ranks
+
+    if workers is not None and (launched_ranks() or 1) > 1:
+        end("--workers: the ranks of mpirun are the workers; leave the option out", WRONG_STUDY)
+    try:
+        return ensemble.run(settings, folder, settings.study.realisations, workers, **options)
+    except (ensemble.FolderMismatch, ensemble.LauncherMismatch) as error:
+        end(str(error), WRONG_STUDY)
+    except ensemble.CampaignFailed as error:
+        end(str(error), TOO_MANY_FAILED)
+    except ensemble.Interrupted as error:
+        end(str(error), STOPPED_EARLY)
+
+
+def _end_if_too_many_failed(dataset: Any, allowed: float) -> None:
+    from rfmpm.variables import FAILED, STATUS
+
+    failed = int(dataset["status"].isin([STATUS[name] for name in FAILED]).sum())
+    total = dataset.sizes["realisation"]
+    if failed > allowed * total:
+        end(f"{failed} of {total} realisations failed, more than the allowed {allowed:.3g} of them", TOO_MANY_FAILED)

@@ -1,0 +1,173 @@
+"""A campaign in its folder: what is missing is run, in rounds while workers die, until its policy or a stop ends it."""
+
+import logging
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from rfmpm import campaign_status, results
+from rfmpm.ensemble import folder, segments
+from rfmpm.ensemble.board import Board
+from rfmpm.ensemble.books import FAILED_CODES, Books, CampaignFailed
+from rfmpm.ensemble.dispatcher import Dispatcher, Todo
+from rfmpm.ensemble.markers import take_left_behind
+from rfmpm.ensemble.progress import Progress
+from rfmpm.ensemble.stop import Abandoned
+from rfmpm.ensemble.worker import ISOLATED_FROM, Worker
+from rfmpm.estimators.monte_carlo import MonteCarlo
+from rfmpm.variables import STATUS
+
+log = logging.getLogger("rfmpm")
+
+
+class Interrupted(RuntimeError):
+    """A campaign that ended early; what is finished is on disk and the same command continues it."""
+
+
+class Campaign:
+    """A campaign in a folder that is locked; rank 0 alone has one.
+
+    Args:
+        crew: who works.
+        worker: of this process.
+        journal: of the folder.
+        allowed: share of failed realisations that is allowed.
+        is_shown: whether progress and remarks are shown on standard error.
+
+    Raises:
+        FolderMismatch: if the rows in the folder are another study's or another version's.
+    """
+
+    def __init__(self, crew, worker: Worker, journal, allowed: float, is_shown: bool):
+        self.crew, self.worker, self.journal = crew, worker, journal
+        self.allowed, self.is_shown = allowed, is_shown
+        self.study, self.directory = worker.study, worker.directory
+        self.total = self.study.study.realisations
+        self._look()
+        self.desk = Dispatcher(self.todo, {}, self.books, journal, self.progress)
+
+    def _look(self) -> None:
+        """Find out what the folder holds."""
+        rows = segments.read_all(self.directory, self.study, self.journal)
+        indices = np.array(sorted(rows), dtype=np.int64)
+        statuses = np.array([rows[index]["status"] for index in indices.tolist()], dtype=np.int64)
+        self.finished = len(indices)
+        self.indices = indices
+        self.todo = Todo(MonteCarlo(self.total).plan(indices))
+        counts = Counter(statuses[indices < self.total].tolist())
+        policy = self.study.failures
+        self.books = Books(self.total, counts, policy.action, self.allowed, self._examples(counts))
+        self.progress = Progress(self.total, self.books.before, self.is_shown)
+
+    def _examples(self, counts: Counter) -> dict[int, tuple[int, str]]:
+        if not FAILED_CODES.intersection(counts):
+            return {}
+        events = [event for event in self.journal.events("failed") if event["realisation"] < self.total]
+        return {STATUS[event["status"]]: (event["realisation"], event["reason"]) for event in reversed(events)}
+
+    def begin(self, fresh: bool) -> None:
+        """Note the start.
+
+        Args:
+            fresh: whether results were discarded.
+        """
+        origin = {"physics_hash": self.study.physics_hash, "source_hash": results.source_hash(), **results.versions()}
+        counts = {"realisations": self.total, "todo": len(self.todo), "workers": self.crew.size}
+        self.journal.write("start", fresh=fresh, **counts, **origin)
+        if folder.take_stop_file(self.directory):
+            self._say(f"removed the file {folder.STOP_FILE}, which had asked an earlier run for its end")
+        self.worker.stop.file = self.directory / folder.STOP_FILE
+        if self.todo:
+            self._say(f"{len(self.todo)} of {self.total} realisations to run, {self.crew.in_words()}, one thread each")
+
+    def _say(self, remark: str) -> None:
+        log.info(remark)
+        if self.is_shown:
+            print(f"rfmpm: {remark}", file=sys.stderr, flush=True)
+
+    @contextmanager
+    def posted(self) -> Iterator[None]:
+        """Keep status.json up to date while the body runs, and let it say in the end how that went."""
+        board = Board(self.directory, self._state)
+        self.worker.stop.on_look = self.renew = board.renew
+        try:
+            yield
+        except BaseException as error:
+            state = campaign_status.STOPPED if isinstance(error, Interrupted) else campaign_status.FAILED
+            board.close(state, str(error) or type(error).__name__)
+            raise
+        else:
+            board.close(campaign_status.COMPLETE)
+        finally:
+            self.worker.stop.on_look = None
+
+    def _state(self) -> dict[str, Any]:
+        books, progress = self.books, self.progress
+        return {
+            "total": self.total,
+            "done": sum(books.counts.values()),
+            "failed": books.failures(),
+            "running": self.desk.running(),
+            "rate_per_minute": progress.per_minute(books.done),
+            "seconds_left": progress.seconds_left(books.done),
+            "workers": self.crew.size,
+        }
+
+    def carry_out(self) -> None:
+        """Run what is missing; returns when every realisation has a row.
+
+        Raises:
+            Interrupted: if something asked for the end, or workers died without getting anything done.
+            CampaignFailed: if the failure policy does not let it go on.
+        """
+        idle = 0
+        losses: list[str] = []
+        while True:
+            why = self.books.why_not()
+            if why and (self.todo or self.books.action == "abort"):
+                self.journal.write("stop", complete=False, missing=len(self.todo), reason=why)
+                raise CampaignFailed(f"stopped with {self.books.before} of {self.total} realisations: {why}")
+            if not self.todo:
+                return
+            if idle == ISOLATED_FROM:
+                self._interrupt("workers die and nothing gets done", losses)
+            before, stopped_by = self.finished, self._round()
+            losses += self.desk.losses
+            self._look()
+            idle = 0 if self.finished > before else idle + 1
+            if stopped_by and self.todo:
+                self._interrupt(stopped_by, losses)
+
+    def _interrupt(self, reason: str, losses: list[str]) -> None:
+        self.journal.write("stop", complete=False, missing=len(self.todo), reason=reason)
+        lines = "".join(f"\n  {line}" for line in dict.fromkeys([*losses, reason]))
+        raise Interrupted(
+            f"stopped early with {self.books.before} of {self.total} realisations; "
+            f"run the same command again to continue{lines}"
+        )
+
+    def _round(self) -> str:
+        """Let the crew work on what is missing; returns what asked for the end, empty if nothing did."""
+        from threadpoolctl import threadpool_limits
+
+        self._note_unfinished()
+        starts = self.journal.unfinished_starts()
+        deadline = self.worker.stop.deadline
+        self.desk = Dispatcher(self.todo, starts, self.books, self.journal, self.progress, deadline)
+        try:
+            with threadpool_limits(limits=1):
+                self.worker.prepare()
+        except Abandoned:
+            return self.worker.stop.reason
+        with self.progress:
+            self.crew.lead(self.worker, self.desk, self.renew)
+        return self.desk.stopped_by or self.worker.stop.reason
+
+    def _note_unfinished(self) -> None:
+        for marker in take_left_behind(self.directory):
+            if marker["realisation"] not in self.indices:
+                self.journal.write("unfinished_start", **marker)

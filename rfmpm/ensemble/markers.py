@@ -1,0 +1,70 @@
+"""Markers: what each worker runs at the moment, so that the next start knows what was not finished."""
+
+import json
+import os
+import platform
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rfmpm.campaign_status import now
+from rfmpm.ensemble.folder import RUNNING
+
+
+@dataclass(frozen=True)
+class Task:
+    """A realisation to be run, and the how manieth start of it this is, those that were never finished included."""
+
+    realisation: int
+    attempt: int = 1
+
+
+class Marker:
+    """The file running/<rank>.json of one worker."""
+
+    def __init__(self, directory: Path, rank: int):
+        self.path = Path(directory) / RUNNING / f"{rank:05d}.json"
+
+    def put(self, task: Task) -> None:
+        """Say what is about to be run.
+
+        Args:
+            task: it.
+
+        Raises:
+            OSError: if it cannot be written.
+        """
+        content = {
+            "realisation": task.realisation,
+            "attempt": task.attempt,
+            "started": now(),
+            "host": platform.node(),
+            "pid": os.getpid(),
+        }
+        temporary = self.path.with_suffix(".new")
+        temporary.write_text(json.dumps(content), encoding="utf-8")
+        os.replace(temporary, self.path)
+
+    def remove(self) -> None:
+        """Say that nothing is being run any more."""
+        self.path.unlink(missing_ok=True)
+
+
+def take_left_behind(directory: Path) -> list[dict[str, Any]]:
+    """Read and remove the markers of workers that did not end cleanly; only while no worker runs.
+
+    Args:
+        directory: of the campaign.
+
+    Returns:
+        The contents of the markers, their rank included; one that was torn tells nothing and is left out.
+    """
+    found = []
+    for path in sorted((Path(directory) / RUNNING).glob("*.json")):
+        try:
+            content = json.loads(path.read_text(encoding="utf-8"))
+            found.append({**content, "realisation": int(content["realisation"]), "rank": int(path.stem)})
+        except (ValueError, KeyError, TypeError):
+            pass
+        path.unlink()
+    return found
