@@ -4,7 +4,7 @@ import json
 import os
 import platform
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -91,11 +91,13 @@ def estimate_so_far(directory: Path) -> dict[str, Any] | None:
     Returns:
         limit_m, value, lower, upper, confidence and n; None if nothing is finished without a gap.
     """
+    directory = Path(directory)
+    merged = directory / ENSEMBLE_FILE
+    paths = [*([merged] if merged.is_file() else []), *sorted((directory / SEGMENTS).glob("*.nc"))]
+    if not paths or not (columns := list(_columns(paths))):
+        return None
     import numpy as np
 
-    columns = list(_columns(Path(directory)))
-    if not columns:
-        return None
     index, run_out, censored = (np.concatenate(parts) for parts in zip(*columns, strict=True))
     index, first = np.unique(index, return_index=True)
     n = int(np.sum(index == np.arange(index.size)))
@@ -103,18 +105,14 @@ def estimate_so_far(directory: Path) -> dict[str, Any] | None:
         return None
     from rfmpm.estimators import exceedance
 
-    limit = float(tomllib.loads((Path(directory) / STUDY_FILE).read_text("utf-8"))["quantities"]["run_out_limit_m"])
+    limit = float(tomllib.loads((directory / STUDY_FILE).read_text("utf-8"))["quantities"]["run_out_limit_m"])
     found = exceedance(run_out[first][:n], limit, censored[first][:n])
     names = ("value", "lower", "upper", "confidence", "n")
     return {"limit_m": limit, **{name: getattr(found, name) for name in names}}
 
 
-def _columns(directory: Path) -> Iterator[tuple]:
+def _columns(paths: Iterable[Path]) -> Iterator[tuple]:
     """Index, run-out (NaN where it failed) and whether that is a lower bound, of every readable file of rows."""
-    merged = directory / ENSEMBLE_FILE
-    paths = [*([merged] if merged.is_file() else []), *sorted((directory / SEGMENTS).glob("*.nc"))]
-    if not paths:
-        return
     import netCDF4
     import numpy as np
 

@@ -90,7 +90,8 @@ def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[st
     if workers is not None and (launched_ranks() or 1) > 1:
         end("--workers: the ranks of mpirun are the workers; leave the option out", WRONG_STUDY)
     try:
-        return ensemble.run(settings, folder, settings.study.realisations, workers, **options)
+        number = settings.study.realisations
+        return ensemble.run(settings, folder, realisations=number, workers=workers, **options)
     except (ensemble.FolderMismatch, ensemble.LauncherMismatch) as error:
         end(str(error), WRONG_STUDY)
     except ensemble.CampaignFailed as error:

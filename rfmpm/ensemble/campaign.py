@@ -98,7 +98,7 @@ class Campaign:
             yield
         except BaseException as error:
             state = campaign_status.STOPPED if isinstance(error, Interrupted) else campaign_status.FAILED
-            board.close(state, str(error) or type(error).__name__)
+            board.close(state, (str(error) or type(error).__name__).splitlines()[-1].strip())
             raise
         else:
             board.close(campaign_status.COMPLETE)

@@ -12,6 +12,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import rfmpm
+from rfmpm import campaign_status
 from rfmpm.cli import app
 from rfmpm.study import Study
 from rfmpm.variables import STATUS
@@ -51,6 +52,13 @@ class Interrupted(RuntimeError):
     pass
 
 
+class CampaignFailed(RuntimeError):
+    pass
+
+
+LEFT_OUT = {"allow_failed": None, "wall_time": None, "log_level": "warning"}
+
+
 @pytest.fixture
 def campaign(replace, monkeypatch):
     """A runner that notes how it was called and ends the way `campaign.end` says."""
@@ -63,8 +71,8 @@ def campaign(replace, monkeypatch):
         codes = np.array([STATUS[status] for status in notes.statuses], dtype="int8")
         return None if not notes.statuses else xr.Dataset({"status": ("realisation", codes)})
 
-    errors = {"FolderMismatch": FolderMismatch, "LauncherMismatch": LauncherMismatch, "Interrupted": Interrupted}
-    replace("ensemble", run=run, **errors)
+    errors = (FolderMismatch, LauncherMismatch, Interrupted, CampaignFailed)
+    replace("ensemble", run=run, **{error.__name__: error for error in errors})
     ranks = ModuleType("rfmpm.ensemble.mpi")
     ranks.launched_ranks = lambda: notes.launched
     monkeypatch.setitem(sys.modules, "rfmpm.ensemble.mpi", ranks)
@@ -89,13 +97,13 @@ def test_run_takes_the_study_at_its_word(campaign):
     call("run", RANDOM)
     assert campaign.directory == Path("results/short_slope_random")
     assert campaign.study == rfmpm.load_study(RANDOM)
-    assert campaign.options == {"realisations": 64, "workers": None, "fresh": False}
+    assert campaign.options == {"realisations": 64, "workers": None, "fresh": False, **LEFT_OUT}
 
 
 def test_options_of_run_override_the_study(campaign, tmp_path):
     call("run", RANDOM, "--realisations", 8, "--seed", 5, "--workers", 2, "--fresh", "--out", tmp_path)
     assert (campaign.study.study.seed, campaign.study.study.realisations) == (5, 8)
-    assert campaign.options == {"realisations": 8, "workers": 2, "fresh": True}
+    assert campaign.options == {"realisations": 8, "workers": 2, "fresh": True, **LEFT_OUT}
     assert campaign.directory == tmp_path
 
 
@@ -114,6 +122,7 @@ def test_overrides_are_validated(campaign, tmp_path):
         (LauncherMismatch("the launcher started 2 ranks"), 2),
         (PermissionError(13, "Permission denied", "results/x"), 2),
         (Interrupted("stopped early with 3 of 64"), 75),
+        (CampaignFailed("realisation 3 ended with status crashed"), 3),
         (KeyboardInterrupt(), 75),
     ],
     ids=lambda value: type(value).__name__ if isinstance(value, BaseException) else "",
@@ -144,6 +153,40 @@ def test_too_many_failed_realisations_are_exit_code_3(campaign, tmp_path, failed
     assert (f"{failed} of 40 realisations failed" in result.stderr) == (code == 3)
 
 
+def test_allowed_share_of_failed_ones_is_the_study_s_unless_given(campaign, tmp_path):
+    study = tmp_path / "study.toml"
+    study.write_text(Path(RANDOM).read_text() + "\n[failures]\nmax_failed_fraction = 0.5\n")
+    campaign.statuses = ["diverged"] * 20 + ["ok"] * 20
+    assert call("run", study, "--out", tmp_path).exit_code == 0
+    assert call("run", study, "--out", tmp_path, "--allow-failed", 0.4).exit_code == 3
+    assert campaign.options["allow_failed"] == 0.4
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [
+        ("3600", 3600.0),
+        ("90m", 5400.0),
+        ("6h", 21600.0),
+        ("1.5d", 129600.0),
+        ("45 s", None),
+        ("5:30:00", 19800.0),
+        ("30:00", 1800.0),
+        ("1-12:00:00", 129600.0),
+        ("0", None),
+        ("-5", None),
+        ("soon", None),
+    ],
+)
+def test_wall_time_is_read_as_people_write_it(campaign, tmp_path, text, seconds):
+    result = call("run", RANDOM, "--out", tmp_path, f"--wall-time={text}")
+    assert result.exit_code == (2 if seconds is None else 0)
+    if seconds is None:
+        assert "90m" in result.stderr
+    else:
+        assert campaign.options["wall_time"] == seconds
+
+
 def test_only_the_first_rank_speaks(campaign, tmp_path, monkeypatch):
     campaign.statuses = []  # what other ranks are given
     result = call("run", RANDOM, "--out", tmp_path)
@@ -153,6 +196,10 @@ def test_only_the_first_rank_speaks(campaign, tmp_path, monkeypatch):
     assert (result.exit_code, result.output) == (2, "")
     monkeypatch.setenv("PMI_RANK", "0")
     assert "study.seed" in call("run", RANDOM, "--seed", -1).stderr
+    monkeypatch.setenv("SLURM_PROCID", "1")  # of the launcher's own step: the ranks of MPI count
+    assert "study.seed" in call("run", RANDOM, "--seed", -1).stderr
+    monkeypatch.delenv("PMI_RANK")
+    assert call("run", RANDOM, "--seed", -1).output == ""
 
 
 def test_workers_and_ranks_exclude_each_other(campaign, tmp_path):
@@ -160,6 +207,57 @@ def test_workers_and_ranks_exclude_each_other(campaign, tmp_path):
     result = call("run", RANDOM, "--workers", 2, "--out", tmp_path)
     assert result.exit_code == 2
     assert "--workers" in result.stderr
+
+
+# --- status
+
+NEWS = {
+    "state": "stopped",
+    "reason": "the limit of --wall-time was reached",
+    "total": 400,
+    "done": 120,
+    "failed": {"crashed": 1, "diverged": 2},
+    "running": [{"rank": 1, "host": "node7", "realisation": 121, "attempt": 1, "seconds": 75.2}],
+    "rate_per_minute": 12.0,
+    "seconds_left": 1400.0,
+    "workers": 4,
+    "host": "node7",
+    "pid": 1,
+    "started": "2026-01-01T00:00:00+00:00",
+    "updated": "2026-01-01T00:10:00+00:00",
+}
+
+
+def test_status_of_a_stopped_campaign(tmp_path):
+    campaign_status.write(tmp_path, NEWS)
+    assert call("status", tmp_path).stdout.splitlines() == [
+        f"{tmp_path}: stopped (4 workers, rank 0 on node7, started 2026-01-01T00:00:00+00:00)",
+        "reason   the limit of --wall-time was reached",
+        "done     120 of 400 realisations",
+        "failed   1 crashed, 2 diverged",
+        "estimate none yet: no realisations finished without a gap",
+    ]
+
+
+def test_status_of_a_running_campaign_without_news_is_doubted(tmp_path):
+    campaign_status.write(tmp_path, NEWS | {"state": "running", "reason": ""})
+    lines = call("status", tmp_path).stdout.splitlines()
+    assert lines[1].startswith("doubt    no sign of life since 2026-01-01T00:10:00+00:00")
+    assert "rate     12 per minute, 0:23:20 left" in lines
+    assert "running  121 for 0:01:15, rank 1 on node7" in lines
+
+
+def test_status_as_json(tmp_path):
+    campaign_status.write(tmp_path, NEWS)
+    assert json.loads(call("status", tmp_path, "--json").stdout) == NEWS | {"doubt": "", "estimate": None}
+
+
+def test_status_where_there_is_none(tmp_path):
+    result = call("status", tmp_path)
+    assert result.exit_code == 2
+    assert "no status.json here" in result.stderr
+    (tmp_path / "status.json").write_text("{")
+    assert "is not the status of a campaign" in call("status", tmp_path).stderr
 
 
 # --- simulate
@@ -347,8 +445,10 @@ def test_version():
     assert call("--version").stdout.strip() == rfmpm.__version__
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["check", RANDOM]], ids=["help", "check"])
-def test_light_commands_load_nothing_heavy(arguments):
+@pytest.mark.parametrize("command", ["help", "check", "status"])
+def test_light_commands_load_nothing_heavy(command, tmp_path):
+    campaign_status.write(tmp_path, NEWS)
+    arguments = {"help": ["--help"], "check": ["check", RANDOM], "status": ["status", str(tmp_path)]}[command]
     heavy = {"numba", "matplotlib", "xarray", "netCDF4", "mpi4py", "scipy", "pandas"}
     code = (
         "import sys\nfrom rfmpm.cli import app\n"
