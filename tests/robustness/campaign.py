@@ -1,7 +1,7 @@
 """Runs the coarse campaign as a program of its own, so that tests can kill it or start it under mpirun.
 
-python campaign.py DIR REALISATIONS [WORKERS] [SECONDS each realisation is held up]
-Prints the hash of the content on rank 0; exit code 75 if it stopped early.
+python campaign.py DIR REALISATIONS [WORKERS] [SECONDS each realisation is held up] [WALL TIME in seconds]
+Prints the hash of the content on rank 0; exit codes as those of `rfmpm run`.
 """
 
 import sys
@@ -24,15 +24,19 @@ def hold_up(seconds: float) -> None:
     realisation.run = slow_run
 
 
-def main(directory: str, realisations: str, workers: str = "", seconds: str = "0") -> int:
+def main(directory: str, realisations: str, workers: str = "", seconds: str = "0", wall_time: str = "") -> int:
     hold_up(float(seconds))
+    options = {"progress": False, "wall_time": float(wall_time) if wall_time else None}
     try:
         found = ensemble.run(
-            load_study(COARSE), directory, int(realisations), int(workers) if workers else None, progress=False
+            load_study(COARSE), directory, int(realisations), int(workers) if workers else None, **options
         )
     except ensemble.Interrupted as error:
         print(error, file=sys.stderr)
         return 75
+    except ensemble.CampaignFailed as error:
+        print(error, file=sys.stderr)
+        return 3
     except (ensemble.FolderMismatch, ensemble.LauncherMismatch) as error:
         print(error, file=sys.stderr)
         return 2
