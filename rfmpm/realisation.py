@@ -1,6 +1,7 @@
 """One realisation: from (study, level, index) to one row; the only place where fields and mechanics meet."""
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf, nan, sqrt
 from pathlib import Path
@@ -118,7 +119,13 @@ def realise_fields(study, index: int, level: int = 0, xi: np.ndarray | None = No
     return _fields(prepare(study), index, level, xi)
 
 
-def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = None) -> dict[str, Any]:
+def run(
+    prepared: Prepared,
+    index: int,
+    level: int = 0,
+    xi: np.ndarray | None = None,
+    watch: Callable[[], None] | None = None,
+) -> dict[str, Any]:
     """Simulate one realisation and make its row.
 
     Args:
@@ -126,6 +133,7 @@ def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = 
         index: of the realisation.
         level: of the plan.
         xi: standard-normal vector, shape (n_variables,); None draws it from the stream of (seed, level, index).
+        watch: called every now and then; what it raises ends the run and is passed on.
 
     Returns:
         Every active variable by name; a failure, by the numerics or by `failures.realisation_time_limit_s`, is a status
@@ -133,8 +141,15 @@ def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = 
     """
     limit = prepared.study.failures.realisation_time_limit_s or inf
     started = time.perf_counter()
+
+    def look() -> None:
+        if time.perf_counter() - started > limit:
+            raise OutOfTime
+        if watch is not None:
+            watch()
+
     try:
-        outcome = _simulate(prepared, _fields(prepared, index, level, xi), frames=0, threads=1, limit=limit)
+        outcome = _simulate(prepared, _fields(prepared, index, level, xi), frames=0, threads=1, look=look)
     except OutOfTime:
         reason = f"took longer than failures.realisation_time_limit_s = {limit:g} s"
         return failed_row(prepared.study, index, "timeout", reason, level, time.perf_counter() - started)
@@ -203,7 +218,11 @@ def _site(study, scene: scenes.Scene) -> random_properties.Site:
 
 
 def _simulate(
-    prepared: Prepared, fields: dict[str, np.ndarray], frames: int, threads: int, limit: float = inf
+    prepared: Prepared,
+    fields: dict[str, np.ndarray],
+    frames: int,
+    threads: int,
+    look: Callable[[], None] = lambda: None,
 ) -> Outcome:
     started = time.perf_counter()
     study, scene = prepared.study, prepared.scene
@@ -211,8 +230,7 @@ def _simulate(
     advance, arguments = SOLVERS[study.time.scheme], scenes.arguments(scene, own, threads)
     observer = Observer(scene, study, own.points, own.history, frames)
     while now.status == RUNNING and now.time < study.time.end_s:
-        if time.perf_counter() - started > limit:
-            raise OutOfTime
+        look()
         until = min(observer.next_sample, study.time.end_s)
         now = advance(now, until, *arguments)
         observer.sample(now)

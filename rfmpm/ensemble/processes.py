@@ -109,6 +109,7 @@ class Processes:
 def _live(worker: Worker, rank: int, connection: Connection, inherited: list[Connection]) -> None:
     for other in inherited:  # copies of the parent's ends; with them open its death would go unnoticed
         other.close()
+    worker.stop.on_look = None  # the parent's
 
     def claim(report: Report) -> int | None:
         with suppress(EOFError, OSError):  # the parent is gone: end

@@ -80,9 +80,17 @@ class Stop:
             for number, handler in earlier.items():
                 signal.signal(number, handler)
 
+    def abandon_if_requested(self) -> None:
+        """Raise Abandoned if something has asked for the end."""
+        if self.is_requested:
+            raise Abandoned
+
     @contextmanager
     def interruptible(self) -> Iterator[None]:
-        """Let what asks for the end raise Abandoned in the body; at once if it asked before."""
+        """Let what asks for the end raise Abandoned in the body; at once if it asked before.
+
+        Not around compiled code: an exception that a signal raises while arguments go in or out may crash it.
+        """
         try:
             self._is_interruptible = True
             if self.is_requested:

@@ -88,21 +88,21 @@ class Worker:
         from threadpoolctl import threadpool_limits
 
         writer, marker = SegmentWriter(self.directory, self.study, rank), Marker(self.directory, rank)
-        error = ""
-        try:
-            # Asked to end, it abandons the realisation at hand to a later run; the last report says so.
-            with suppress(Abandoned), self.stop.listening(), threadpool_limits(limits=1), self._log_of(rank):
-                self.prepare()
-                self._loop(writer, marker, claim)
-        except Exception as failure:
-            error = _described(failure)
-        segments: list[dict] = []
-        try:
-            segments = writer.flush()
+        with self.stop.listening(), threadpool_limits(limits=1), self._log_of(rank):
+            error, segments = "", []
+            try:
+                # Asked to end, it abandons the realisation at hand to a later run; the last report says so.
+                with suppress(Abandoned):
+                    self.prepare()
+                    self._loop(writer, marker, claim)
+            except Exception as failure:
+                error = _described(failure)
+            try:
+                segments = writer.flush()
+            except Exception as failure:
+                error = error or _described(failure)
             marker.remove()
-        except OSError as failure:
-            error = error or _described(failure)
-        claim(Report(segments=segments, is_last=True, stopping=self.stop.reason, error=error))
+            claim(Report(segments=segments, is_last=True, stopping=self.stop.reason, error=error))
 
     def _loop(self, writer: SegmentWriter, marker: Marker, claim: Claim) -> None:
         report = Report(host=platform.node())
@@ -153,8 +153,7 @@ class Worker:
 
         started = time.perf_counter()
         try:
-            with self.stop.interruptible():
-                return realisation.run(self.prepared, index)
+            return realisation.run(self.prepared, index, watch=self.stop.abandon_if_requested)
         except Exception as failure:
             return failed_row(self.study, index, "crashed", _described(failure), wall_time=_since(started))
 

@@ -17,9 +17,12 @@ COARSE = Path(__file__).with_name("coarse.toml")
 def hold_up(seconds: float) -> None:
     run = realisation.run
 
-    def slow_run(prepared, index):
-        time.sleep(seconds)
-        return run(prepared, index)
+    def slow_run(prepared, index, watch):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            watch()
+            time.sleep(min(0.02, seconds))
+        return run(prepared, index, watch=watch)
 
     realisation.run = slow_run
 

@@ -253,3 +253,16 @@ def test_time_limit_makes_a_row_that_says_so(study):
 def test_time_limit_that_is_not_reached_changes_no_bit(prepared, study):
     limited = prepare(study.with_changes({"failures.realisation_time_limit_s": 1e9}))
     np.testing.assert_equal(without_time(run(limited, 2)), without_time(run(prepared, 2)))
+
+
+def test_watch_is_called_on_the_way_and_what_it_raises_is_passed_on(prepared, study):
+    calls = []
+    watched = run(prepared, 2, watch=lambda: calls.append(None))
+    assert len(calls) >= study.time.end_s / SAMPLE_INTERVAL - 1
+    np.testing.assert_equal(without_time(watched), without_time(run(prepared, 2)))
+
+    def enough():
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(prepared, 2, watch=enough)

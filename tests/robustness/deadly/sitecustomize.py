@@ -8,10 +8,10 @@ from rfmpm import realisation
 real_run = realisation.run
 
 
-def run(prepared, index):
+def run(prepared, index, **options):
     if index == int(os.environ["DEADLY"]):
         os.kill(os.getpid(), signal.SIGKILL)
-    return real_run(prepared, index)
+    return real_run(prepared, index, **options)
 
 
 realisation.run = run

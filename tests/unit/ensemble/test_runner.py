@@ -79,10 +79,10 @@ def test_fresh_runs_everything_again(study, reference, tmp_path):
 def test_exception_becomes_a_crashed_row(study, reference, tmp_path, monkeypatch):
     real_run = realisation.run
 
-    def sometimes(prepared, index):
+    def sometimes(prepared, index, **options):
         if index == 2:
             raise ZeroDivisionError("a\nreason")
-        return real_run(prepared, index)
+        return real_run(prepared, index, **options)
 
     monkeypatch.setattr(realisation, "run", sometimes)
     found = run(study, tmp_path, 4, workers=2, allow_failed=0.25)
@@ -97,11 +97,11 @@ def kill_in(monkeypatch, index, times):
     """Let the workers that run a realisation be killed, `times` times; a file counts, since they are processes."""
     real_run = realisation.run
 
-    def deadly(prepared, i):
+    def deadly(prepared, i, **options):
         if i == index and len(list(times[0].glob("death-*"))) < times[1]:
             (times[0] / f"death-{os.getpid()}").touch()
             os.kill(os.getpid(), signal.SIGKILL)
-        return real_run(prepared, i)
+        return real_run(prepared, i, **options)
 
     monkeypatch.setattr(realisation, "run", deadly)
 
@@ -194,12 +194,12 @@ def fail_first(monkeypatch, indices, times):
     """Let realisations raise the first `times` times in a process."""
     real_run, tries = realisation.run, dict.fromkeys(indices, 0)
 
-    def failing(prepared, index):
+    def failing(prepared, index, **options):
         if index in tries:
             tries[index] += 1
             if tries[index] <= times:
                 raise MemoryError("no memory left")
-        return real_run(prepared, index)
+        return real_run(prepared, index, **options)
 
     monkeypatch.setattr(realisation, "run", failing)
 
@@ -220,7 +220,7 @@ def test_retry_gives_up_in_the_end_and_says_how_often_it_tried(study, tmp_path, 
 def test_retry_does_not_repeat_what_would_end_the_same(study, tmp_path, monkeypatch):
     calls = []
 
-    def diverges(prepared, index):
+    def diverges(prepared, index, **options):
         calls.append(index)
         return failed_row(study, index, "diverged", "energy came from nothing")
 
