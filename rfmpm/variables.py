@@ -130,7 +130,7 @@ VARIABLES = _table(
         "wall_time",
         "s",
         "computing time",
-        "Elapsed time of this realisation on its worker; the one variable that differs from run to run.",
+        "Elapsed time of this realisation on its worker; differs from run to run.",
     ),
     _quantity(
         "plastic_work_share",
@@ -169,8 +169,34 @@ VARIABLES = _table(
     ),
 )
 
+PROVENANCE = _table(
+    _quantity(
+        "attempt",
+        "1",
+        "number of starts until it ended",
+        "1 unless an earlier start took its worker with it or was tried again; differs from run to run.",
+        "int32",
+    ),
+    _quantity(
+        "origin",
+        "1",
+        "where it was computed",
+        "Number of the line of the global attribute origins that names machine and versions; differs from run to run.",
+        "int32",
+    ),
+)
+
+RUN_DEPENDENT = frozenset({"wall_time", *PROVENANCE})  # no part of what a campaign found: left out of its hash
+
 COORDINATES = _table(
-    Variable("realisation", ("realisation",), "int64", "1", "index of the realisation"),
+    Variable(
+        "realisation",
+        ("realisation",),
+        "int64",
+        "1",
+        "index of the realisation",
+        {"comment": "Computed again, bit for bit, by: rfmpm rerun DIR --index INDEX."},
+    ),
     Variable(
         "level",
         ("realisation",),

@@ -78,19 +78,19 @@ def _crew(workers: int | None) -> Processes | Ranks:
 def _campaign(crew: Processes | Ranks, worker: Worker, journal, fresh: bool, is_shown: bool) -> "xr.Dataset":
     study, directory = worker.study, worker.directory
     total = study.study.realisations
-    rows = segments.read_all(directory, study, journal)
-    todo = MonteCarlo(total).plan(rows)
+    before = segments.finished(directory, study, journal)
+    todo = MonteCarlo(total).plan(before.indices)
     journal.write("start", fresh=fresh, realisations=total, todo=len(todo), workers=crew.size, **_origin(study))
     todo = _give_up(todo, worker, journal)
     losses = []
     if todo:
         losses = _carry_out(crew, worker, journal, todo, Progress(total, total - len(todo), is_shown))
-    rows = segments.read_all(directory, study, journal)
-    missing = MonteCarlo(total).plan(rows)
+    after = segments.finished(directory, study, journal, before)
+    missing = MonteCarlo(total).plan(after.indices)
     if missing:
         journal.write("stop", complete=False, missing=len(missing))
         raise Interrupted(_what_is_left(total, missing, losses))
-    return _finish(study, directory, [rows[index] for index in range(total)], journal)
+    return _finish(study, directory, total, after, journal)
 
 
 def _origin(study) -> dict[str, str]:
@@ -132,10 +132,10 @@ def _what_is_left(total: int, missing: list[int], losses: list[str]) -> str:
     )
 
 
-def _finish(study, directory: Path, rows: list[segments.Row], journal) -> "xr.Dataset":
+def _finish(study, directory: Path, total: int, found: segments.Finished, journal) -> "xr.Dataset":
     path = directory / results.ENSEMBLE_FILE
-    merged = results.dataset(rows, study, {"start": journal.started(), "end": journal.ended()})
-    results.write_dataset(path, merged)
+    when = {"start": journal.started(), "end": journal.ended()}
+    content_hash = segments.merge(directory, study, journal, total, path, when, known=found)
     shutil.rmtree(directory / folder.WORK, ignore_errors=True)
-    journal.write("stop", complete=True, content_hash=merged.attrs["content_hash"])
+    journal.write("stop", complete=True, content_hash=content_hash)
     return results.open_ensemble(path)
