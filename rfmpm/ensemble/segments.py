@@ -138,12 +138,12 @@ def finished(directory: Path, study, journal, earlier: Finished = NOTHING) -> Fi
         FolderMismatch: if the rows were made by another study or another version of the sources.
         RowsDiffer: if two rows of one realisation are not the same.
     """
-    known = {segment.name for segment in earlier.segments}
+    known, physics_hash = {segment.name for segment in earlier.segments}, study.physics_hash
     segments, places = list(earlier.segments), [earlier.places]
     for path in sorted((Path(directory) / SEGMENTS).glob(f"*{results.ROWS_SUFFIX}")):
         if path.name in known or (stored := _valid(path, journal)) is None:
             continue
-        _check_origin(path, stored.attributes, study)
+        _check_origin(path, stored.attributes, physics_hash)
         found = np.empty(len(stored.columns["realisation"]), _PLACES)
         found["realisation"], found["status"] = stored.columns["realisation"], stored.columns["status"]
         found["segment"], found["row"] = len(segments), np.arange(len(found))
@@ -270,8 +270,8 @@ def _quarantine(path: Path, reason: str, journal) -> None:
     journal.write("quarantine", segment=path.name, reason=reason)
 
 
-def _check_origin(path: Path, attributes: Mapping[str, Any], study) -> None:
-    if attributes.get("physics_hash") != study.physics_hash:
+def _check_origin(path: Path, attributes: Mapping[str, Any], physics_hash: str) -> None:
+    if attributes.get("physics_hash") != physics_hash:
         raise FolderMismatch(f"{path}: holds rows of another study; choose another folder, or discard with --fresh")
     if attributes.get("source_hash") != results.source_hash():
         raise FolderMismatch(
