@@ -126,7 +126,11 @@ def run(prepared: Prepared, index: int, level: int = 0, xi: np.ndarray | None = 
     Returns:
         Every active variable by name; a numerical failure is a status with a reason, and its quantities are NaN.
     """
-    outcome = _simulate(prepared, _fields(prepared, index, level, xi), frames=0, threads=1)
+    return as_row(_simulate(prepared, _fields(prepared, index, level, xi), frames=0, threads=1), index, level)
+
+
+def as_row(outcome: Outcome, index: int, level: int = 0) -> dict[str, Any]:
+    """Make the row of a simulated realisation: every active variable by name."""
     return outcome.quantities | {
         "realisation": index,
         "level": level,

@@ -9,6 +9,9 @@ import typer
 
 from rfmpm.cli.benchmark import benchmark
 from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY, end, ends_in_words
+from rfmpm.cli.merge import merge
+from rfmpm.cli.ranges import index_range
+from rfmpm.cli.rerun import rerun
 from rfmpm.cli.sounding import sounding
 from rfmpm.cli.tables import cost_row, outcome_rows, print_table
 
@@ -23,6 +26,8 @@ app = typer.Typer(
 )
 
 app.add_typer(benchmark, name="benchmark")
+app.command("merge")(ends_in_words(merge))
+app.command("rerun")(ends_in_words(rerun))
 app.command("sounding")(ends_in_words(sounding))
 
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
@@ -75,6 +80,9 @@ def run(
     allow_failed: Annotated[
         float, typer.Option(min=0.0, max=1.0, metavar="SHARE", help="Failed realisations beyond this share: exit 3.")
     ] = 0.05,
+    indices: Annotated[
+        str | None, typer.Option(metavar="A:B", help="Only the realisations from A up to B, itself not included.")
+    ] = None,
 ) -> None:
     """Run the campaign, or continue what the folder holds of the same study."""
     from rfmpm.study import load_study
@@ -82,7 +90,7 @@ def run(
     given = {"study.realisations": realisations, "study.seed": seed}
     settings = load_study(study).with_changes({path: value for path, value in given.items() if value is not None})
     folder = out or Path(settings.output.directory)
-    dataset = _campaign(settings, folder, workers, fresh)
+    dataset = _campaign(settings, folder, workers, fresh, index_range(indices))
     if dataset is None:
         return  # another rank than the first
     from rfmpm import report as reporting
@@ -94,15 +102,21 @@ def run(
     _end_if_too_many_failed(dataset, allow_failed)
 
 
-def _campaign(settings: Any, folder: Path, workers: int | None, fresh: bool) -> Any:
+def _campaign(
+    settings: Any, folder: Path, workers: int | None, fresh: bool, indices: tuple[int, int] | None = None
+) -> Any:
     from rfmpm import ensemble
     from rfmpm.ensemble.mpi import launched_ranks
 
+    if indices is not None and indices[1] > settings.study.realisations:
+        end(f"--indices {indices[0]}:{indices[1]}: the study has {settings.study.realisations}", WRONG_STUDY)
     if workers is not None and (launched_ranks() or 1) > 1:
         end("--workers: the ranks of mpirun are the workers; leave the option out", WRONG_STUDY)
     try:
-        return ensemble.run(settings, folder, realisations=settings.study.realisations, workers=workers, fresh=fresh)
-    except (ensemble.FolderMismatch, ensemble.LauncherMismatch) as error:
+        return ensemble.run(
+            settings, folder, settings.study.realisations, workers=workers, fresh=fresh, indices=indices
+        )
+    except (ensemble.FolderMismatch, ensemble.LauncherMismatch, ensemble.RowsDiffer) as error:
         end(str(error), WRONG_STUDY)
     except ensemble.Interrupted as error:
         end(str(error), STOPPED_EARLY)

@@ -1,7 +1,10 @@
 """The runner: carries out a campaign over processes or MPI ranks, resumes it, and keeps failures as rows."""
 
+from rfmpm.ensemble.finished import RowsDiffer
 from rfmpm.ensemble.folder import FolderMismatch
 from rfmpm.ensemble.mpi import LauncherMismatch
+from rfmpm.ensemble.parts import merge_parts
 from rfmpm.ensemble.runner import Interrupted, run
+from rfmpm.ensemble.segments import find_row
 
-__all__ = ["FolderMismatch", "Interrupted", "LauncherMismatch", "run"]
+__all__ = ["FolderMismatch", "Interrupted", "LauncherMismatch", "RowsDiffer", "find_row", "merge_parts", "run"]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from rfmpm import results
 from rfmpm.ensemble import folder, segments
 from rfmpm.ensemble.dispatcher import Dispatcher
+from rfmpm.ensemble.finished import Finished
 from rfmpm.ensemble.mpi import Ranks, launched_ranks
 from rfmpm.ensemble.processes import Processes
 from rfmpm.ensemble.progress import Progress
@@ -31,6 +32,7 @@ def run(
     workers: int | None = None,
     fresh: bool = False,
     progress: bool = True,
+    indices: tuple[int, int] | None = None,
 ) -> "xr.Dataset | None":
     """Run a campaign, or what is missing of it, and gather its rows in ensemble.nc.
 
@@ -43,27 +45,38 @@ def run(
         workers: local processes; as many as there are processors if None.
         fresh: discard the results the folder holds.
         progress: show progress on standard error.
+        indices: run the realisations from the first of these up to the second, itself not included, as a part of the
+            study; all of them if None.
 
     Returns:
-        The first `realisations` rows; None on every MPI rank but 0.
+        The rows that were asked for; None on every MPI rank but 0.
 
     Raises:
         FolderMismatch: if the folder cannot take this campaign; nothing in it was changed.
         LauncherMismatch: if mpirun and the MPI library do not belong together.
         Interrupted: if it ended early, by a signal or because workers were lost.
-        ValueError: for less than one realisation or worker, or for workers under several MPI ranks.
+        ValueError: for less than one realisation or worker, for workers under several MPI ranks, or for indices that
+            the study does not have.
     """
     if realisations is not None:
         study = study.with_changes({"study.realisations": realisations})
+    asked = _asked(study.study.realisations, indices)
     crew, worker = _crew(workers), Worker(study, Path(directory))
     if crew.rank > 0:
         crew.follow(worker)
         return None
     try:
         with worker.stop.listening(), folder.opened(worker.directory, study, fresh) as journal:
-            return _campaign(crew, worker, journal, fresh, progress)
+            return _campaign(crew, worker, journal, asked, fresh, progress)
     finally:
         crew.close()
+
+
+def _asked(total: int, indices: tuple[int, int] | None) -> range:
+    first, stop = (0, total) if indices is None else indices
+    if not 0 <= first < stop <= total:
+        raise ValueError(f"indices = {first}:{stop}: must be a part, not empty, of 0:{total}")
+    return range(first, stop)
 
 
 def _crew(workers: int | None) -> Processes | Ranks:
@@ -75,22 +88,28 @@ def _crew(workers: int | None) -> Processes | Ranks:
     return Ranks()
 
 
-def _campaign(crew: Processes | Ranks, worker: Worker, journal, fresh: bool, is_shown: bool) -> "xr.Dataset":
+def _campaign(
+    crew: Processes | Ranks, worker: Worker, journal, asked: range, fresh: bool, is_shown: bool
+) -> "xr.Dataset":
     study, directory = worker.study, worker.directory
-    total = study.study.realisations
+    total = len(asked)
     before = segments.finished(directory, study, journal)
-    todo = MonteCarlo(total).plan(before.indices)
+    todo = _missing(asked, before)
     journal.write("start", fresh=fresh, realisations=total, todo=len(todo), workers=crew.size, **_origin(study))
     todo = _give_up(todo, worker, journal)
     losses = []
     if todo:
         losses = _carry_out(crew, worker, journal, todo, Progress(total, total - len(todo), is_shown))
     after = segments.finished(directory, study, journal, before)
-    missing = MonteCarlo(total).plan(after.indices)
+    missing = _missing(asked, after)
     if missing:
         journal.write("stop", complete=False, missing=len(missing))
         raise Interrupted(_what_is_left(total, missing, losses))
-    return _finish(study, directory, total, after, journal)
+    return _finish(study, directory, asked, after, journal)
+
+
+def _missing(asked: range, found: Finished) -> list[int]:
+    return [index for index in MonteCarlo(asked.stop).plan(found.indices) if index in asked]
 
 
 def _origin(study) -> dict[str, str]:
@@ -132,10 +151,10 @@ def _what_is_left(total: int, missing: list[int], losses: list[str]) -> str:
     )
 
 
-def _finish(study, directory: Path, total: int, found: segments.Finished, journal) -> "xr.Dataset":
+def _finish(study, directory: Path, asked: range, found: Finished, journal) -> "xr.Dataset":
     path = directory / results.ENSEMBLE_FILE
     when = {"start": journal.started(), "end": journal.ended()}
-    content_hash = segments.merge(directory, study, journal, total, path, when, known=found)
+    content_hash = segments.merge(directory, study, journal, asked.stop, path, when, asked.start, found)
     shutil.rmtree(directory / folder.WORK, ignore_errors=True)
     journal.write("stop", complete=True, content_hash=content_hash)
     return results.open_ensemble(path)

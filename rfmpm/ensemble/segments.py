@@ -5,7 +5,6 @@ import os
 import shutil
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -13,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from rfmpm import results
+from rfmpm.ensemble.finished import NOTHING, PLACES, Finished, Segment, one_each
 from rfmpm.ensemble.folder import QUARANTINE, SEGMENTS, FolderMismatch
-from rfmpm.variables import FAILED, STATUS, active_variables
+from rfmpm.variables import active_variables
 
 log = logging.getLogger("rfmpm")
 
@@ -23,11 +23,6 @@ SECONDS = 20.0  # a worker that is killed takes so much of its work with it
 Row = dict[str, Any]
 
 _BLOCK = 2**26  # bytes of the rows that are merged at once
-_PLACES = np.dtype([("realisation", "i8"), ("segment", "i4"), ("row", "i4"), ("status", "i1")])
-
-
-class RowsDiffer(RuntimeError):
-    """Two rows of one realisation that are not the same, which no campaign can produce."""
 
 
 class SegmentWriter:
@@ -71,55 +66,6 @@ class SegmentWriter:
         return [written]
 
 
-@dataclass(frozen=True)
-class Segment:
-    """A valid segment."""
-
-    name: str
-    origin: str  # machine and versions that computed its rows
-    is_whole: bool  # whether its rows have all that the study asks for
-
-
-@dataclass(frozen=True)
-class Finished:
-    """Which realisations have a row and where it lies; 17 bytes each, the rows themselves stay on the disk."""
-
-    segments: tuple[Segment, ...]
-    places: np.ndarray  # one for each realisation on record, sorted; also of rows that lack what the study asks for
-
-    @cached_property
-    def _whole(self) -> np.ndarray:
-        is_whole = np.array([segment.is_whole for segment in self.segments], bool)
-        return self.places[is_whole[self.places["segment"]]]
-
-    @cached_property
-    def indices(self) -> np.ndarray:
-        """Finished realisations, sorted, shape (n,)."""
-        return np.ascontiguousarray(self._whole["realisation"])
-
-    @cached_property
-    def status(self) -> np.ndarray:
-        """Code of STATUS of each of `indices`, shape (n,)."""
-        return np.ascontiguousarray(self._whole["status"])
-
-    @property
-    def count(self) -> int:
-        """Number of finished realisations."""
-        return len(self.indices)
-
-    @property
-    def failed(self) -> int:
-        """How many of them failed."""
-        return int(np.isin(self.status, [STATUS[name] for name in FAILED]).sum())
-
-    def between(self, first: int, stop: int) -> np.ndarray:
-        """Places of the finished realisations from `first` up to `stop`, sorted."""
-        return self._whole[np.searchsorted(self.indices, first) : np.searchsorted(self.indices, stop)]
-
-
-NOTHING = Finished((), np.empty(0, _PLACES))
-
-
 def finished(directory: Path, study, journal, earlier: Finished = NOTHING) -> Finished:
     """Find out which realisations have a valid row; a segment that is not valid counts as if it were not there.
 
@@ -129,7 +75,8 @@ def finished(directory: Path, study, journal, earlier: Finished = NOTHING) -> Fi
         directory: of the campaign.
         study: the study that is run.
         journal: where a damaged segment is noted, which goes to quarantine; None leaves it where it is.
-        earlier: what the same function found before; only segments that are new since are read.
+        earlier: what the same function found before, there or in another folder; only other segments are read, and
+            their rows are added.
 
     Returns:
         The finished realisations.
@@ -138,18 +85,18 @@ def finished(directory: Path, study, journal, earlier: Finished = NOTHING) -> Fi
         FolderMismatch: if the rows were made by another study or another version of the sources.
         RowsDiffer: if two rows of one realisation are not the same.
     """
-    known, physics_hash = {segment.name for segment in earlier.segments}, study.physics_hash
+    known, physics_hash = {segment.path for segment in earlier.segments}, study.physics_hash
     segments, places = list(earlier.segments), [earlier.places]
     for path in sorted((Path(directory) / SEGMENTS).glob(f"*{results.ROWS_SUFFIX}")):
-        if path.name in known or (stored := _valid(path, journal)) is None:
+        if path in known or (stored := _valid(path, journal)) is None:
             continue
         _check_origin(path, stored.attributes, physics_hash)
-        found = np.empty(len(stored.columns["realisation"]), _PLACES)
+        found = np.empty(len(stored.columns["realisation"]), PLACES)
         found["realisation"], found["status"] = stored.columns["realisation"], stored.columns["status"]
         found["segment"], found["row"] = len(segments), np.arange(len(found))
-        segments.append(Segment(path.name, _origin(stored.attributes), _is_whole(stored.attributes, study)))
+        segments.append(Segment(path, _origin(stored.attributes), _is_whole(stored.attributes, study)))
         places.append(found)
-    return Finished(tuple(segments), _one_each(Path(directory), tuple(segments), np.concatenate(places)))
+    return Finished(tuple(segments), one_each(segments, np.concatenate(places)))
 
 
 def merge(
@@ -190,11 +137,40 @@ def merge(
     origins = sorted({found.segments[segment].origin for segment in used})
     lines = "\n".join(f"{number}: {origin}" for number, origin in enumerate(origins))
     names = ["realisation", "level", "attempt", *(variable.name for variable in active_variables(study))]
-    blocks = _blocks(Path(directory), found, places, origins, names)
-    return results.write_ensemble(path, study, len(places), blocks, {**attributes, "origins": lines})
+    described = {**attributes, "origins": lines, **_part(first, total, study)}
+    return results.write_ensemble(path, study, len(places), _blocks(found, places, origins, names), described)
 
 
-def _blocks(directory: Path, found: Finished, places: np.ndarray, origins, names) -> Iterator[results.Columns]:
+def _part(first: int, total: int, study) -> dict[str, int]:
+    """What a dataset says that holds a part of the study."""
+    if (first, total) == (0, study.study.realisations):
+        return {}
+    return {"first_realisation": first, "realisations_of_study": study.study.realisations}
+
+
+def find_row(directory: Path, index: int) -> results.StoredRows:
+    """Read the row of one realisation, of whatever study and version, complete campaign or not.
+
+    Args:
+        directory: of the campaign.
+        index: of the realisation.
+
+    Returns:
+        The row, each column of shape (1,) or (1, bins), and what its segment says about it.
+
+    Raises:
+        LookupError: if no valid segment has it.
+    """
+    for path in sorted((Path(directory) / SEGMENTS).glob(f"*{results.ROWS_SUFFIX}")):
+        if (stored := _valid(path, None)) is None:
+            continue
+        at = np.flatnonzero(stored.columns["realisation"] == index)
+        if len(at):
+            return results.StoredRows({name: values[at] for name, values in stored.columns.items()}, stored.attributes)
+    raise LookupError(f"{directory}: realisation {index} has no row here; has it been run?")
+
+
+def _blocks(found: Finished, places: np.ndarray, origins, names) -> Iterator[results.Columns]:
     """Gather rows that follow each other from the segments they are scattered over."""
     start, step = 0, 1
     while start < len(places):
@@ -202,7 +178,7 @@ def _blocks(directory: Path, found: Finished, places: np.ndarray, origins, names
         taken = {"origin": np.empty(len(block), "i4")}
         for number in np.unique(block["segment"]):
             segment = found.segments[number]
-            stored = _read(directory, segment).columns
+            stored = results.read_rows(segment.path).columns
             at = np.flatnonzero(block["segment"] == number)
             taken["origin"][at] = origins.index(segment.origin)
             for name in names:
@@ -211,37 +187,6 @@ def _blocks(directory: Path, found: Finished, places: np.ndarray, origins, names
         yield taken
         start += len(block)
         step = max(1, _BLOCK // sum(values.nbytes // len(block) for values in taken.values()))
-
-
-def _one_each(directory: Path, segments: tuple[Segment, ...], places: np.ndarray) -> np.ndarray:
-    """Sort by realisation and keep one row each: a whole one before another, then that of the segment found first."""
-    is_whole = np.array([segment.is_whole for segment in segments], bool)
-    places = places[np.lexsort((places["segment"], ~is_whole[places["segment"]], places["realisation"]))]
-    is_repeat = np.concatenate([[False], places["realisation"][1:] == places["realisation"][:-1]])[: len(places)]
-    repeats = np.flatnonzero(is_repeat)
-    if len(repeats):
-        kept = np.flatnonzero(~is_repeat)[np.cumsum(~is_repeat)[repeats] - 1]
-        pairs, group = np.unique(places["segment"][[kept, repeats]], axis=1, return_inverse=True)
-        order = np.argsort(group.ravel(), kind="stable")
-        of_pairs = np.split(order, np.searchsorted(group.ravel()[order], np.arange(1, pairs.shape[1])))
-        for pair, at in zip(pairs.T, of_pairs, strict=True):
-            _compare(directory, [segments[number] for number in pair], places[kept[at]], places[repeats[at]])
-    return places[~is_repeat]
-
-
-def _compare(directory: Path, pair: list[Segment], left: np.ndarray, right: np.ndarray) -> None:
-    rows = zip((_read(directory, segment) for segment in pair), (left["row"], right["row"]), strict=True)
-    first, second = ({name: values[at] for name, values in stored.columns.items()} for stored, at in rows)
-    for name, is_different in results.differences(first, second).items():
-        at = int(np.argmax(is_different))
-        raise RowsDiffer(
-            f"realisation {left['realisation'][at]} has two different rows: {name} is {first[name][at]} in "
-            f"{pair[0].name} and {second[name][at]} in {pair[1].name}, both in {directory / SEGMENTS}"
-        )
-
-
-def _read(directory: Path, segment: Segment) -> results.StoredRows:
-    return results.read_rows(directory / SEGMENTS / segment.name)
 
 
 def _origin(attributes: Mapping[str, Any]) -> str:
@@ -257,7 +202,9 @@ def _valid(path: Path, journal) -> results.StoredRows | None:
     try:
         return results.read_rows(path)
     except results.UnreadableRows as error:
-        if journal is not None:
+        if journal is None:
+            log.warning("%s; its realisations count as missing", error)
+        else:
             _quarantine(path, str(error), journal)
         return None
 
@@ -277,5 +224,6 @@ def _check_origin(path: Path, attributes: Mapping[str, Any], physics_hash: str) 
         raise FolderMismatch(
             f"{path.parents[1]}: its results were made by another version of the program "
             f"({attributes.get('rfmpm_version')}, sources {str(attributes.get('source_hash'))[:12]}; "
-            f"here {results.source_hash()[:12]}); discard them with --fresh, or choose another folder with --out"
+            f"here {results.source_hash()[:12]}); use that version, discard them with --fresh, or choose another "
+            "folder with --out"
         )

@@ -23,7 +23,8 @@ class Numbers:
     """What the report says, as numbers in SI units."""
 
     held: int  # rows in the dataset
-    used: int  # rows the estimates rest on: indices 0, 1, 2, ... without a gap
+    first: int  # index of the first row: 0 but in a part of a study
+    used: int  # rows the estimates rest on: indices from the first on without a gap
     completed: int
     limit: float  # [m]
     mean_run_out: estimators.Estimate  # [m]
@@ -59,6 +60,7 @@ def analyse(dataset, study) -> Numbers:
     counts = _thinned(np.arange(1, run_out.size + 1))
     return Numbers(
         held=dataset.sizes["realisation"],
+        first=first_index(dataset),
         used=rows.sizes["realisation"],
         completed=int(np.sum(~np.isnan(run_out))),
         limit=limit,
@@ -83,11 +85,19 @@ def analyse(dataset, study) -> Numbers:
 
 
 def usable(dataset):
-    """Return the rows with indices 0, 1, 2, ... up to the first gap, in this order (xarray.Dataset)."""
+    """Return the rows with indices 0, 1, 2, ... up to the first gap, in this order (xarray.Dataset).
+
+    Those of a part of a study begin with its own first index.
+    """
     indices = dataset["realisation"].values
     if np.any(np.diff(indices) < 0):
         dataset = dataset.sortby("realisation")
-    return dataset.isel(realisation=slice(estimators.contiguous_prefix(indices)))
+    return dataset.isel(realisation=slice(estimators.contiguous_prefix(indices - first_index(dataset))))
+
+
+def first_index(dataset) -> int:
+    """Return the index of the first realisation that the dataset is to hold: 0 but in a part of a study."""
+    return int(dataset.attrs.get("first_realisation", 0))
 
 
 def _thinned(values: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ import hashlib
 import json
 import os
 import secrets
+import shutil
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -161,6 +162,23 @@ def read_rows(path: Path) -> StoredRows:
         return StoredRows(found, header["attributes"])
     except (ValueError, KeyError, TypeError) as error:  # intact, and yet not ours
         raise UnreadableRows(f"{path}: {type(error).__name__}: {error}") from error
+
+
+def copy_rows(path: Path, folder: Path) -> None:
+    """Copy a file of rows; nothing happens if the folder has it.
+
+    Args:
+        path: the file.
+        folder: that gets the copy, under the same name.
+
+    Raises:
+        UnreadableRows: if the file is torn or altered.
+        OSError: if it cannot be read or the copy not be written.
+    """
+    if not (folder / path.name).exists():
+        read_rows(path)
+        with whole_file(folder / path.name) as temporary:
+            shutil.copyfile(path, temporary)
 
 
 def differences(first: Columns, second: Columns) -> dict[str, np.ndarray]:

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from rfmpm import ensemble, realisation, results
-from rfmpm.ensemble import segments
 from rfmpm.variables import STATUS, active_variables
 
 REALISATIONS = 12
@@ -130,7 +129,7 @@ def write_changed_copy(directory, name, change):
 def test_rows_that_differ_are_an_error(study, tmp_path):
     run(study, tmp_path, 2)
     write_changed_copy(tmp_path, "run_out", 1e-12)
-    with pytest.raises(segments.RowsDiffer, match="realisation 1 has two different rows: run_out is"):
+    with pytest.raises(ensemble.RowsDiffer, match="realisation 1 has two different rows: run_out is"):
         run(study, tmp_path, 2)
 
 
