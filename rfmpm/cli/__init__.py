@@ -114,7 +114,12 @@ def _campaign(
         end("--workers: the ranks of mpirun are the workers; leave the option out", WRONG_STUDY)
     try:
         return ensemble.run(
-            settings, folder, settings.study.realisations, workers=workers, fresh=fresh, indices=indices
+            settings,
+            folder,
+            realisations=settings.study.realisations,
+            workers=workers,
+            fresh=fresh,
+            indices=indices,
         )
     except (ensemble.FolderMismatch, ensemble.LauncherMismatch, ensemble.RowsDiffer) as error:
         end(str(error), WRONG_STUDY)

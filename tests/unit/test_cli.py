@@ -51,6 +51,10 @@ class Interrupted(RuntimeError):
     pass
 
 
+class RowsDiffer(RuntimeError):
+    pass
+
+
 @pytest.fixture
 def campaign(replace, monkeypatch):
     """A runner that notes how it was called and ends the way `campaign.end` says."""
@@ -63,8 +67,8 @@ def campaign(replace, monkeypatch):
         codes = np.array([STATUS[status] for status in notes.statuses], dtype="int8")
         return None if not notes.statuses else xr.Dataset({"status": ("realisation", codes)})
 
-    errors = {"FolderMismatch": FolderMismatch, "LauncherMismatch": LauncherMismatch, "Interrupted": Interrupted}
-    replace("ensemble", run=run, **errors)
+    errors = (FolderMismatch, LauncherMismatch, Interrupted, RowsDiffer)
+    replace("ensemble", run=run, **{error.__name__: error for error in errors})
     ranks = ModuleType("rfmpm.ensemble.mpi")
     ranks.launched_ranks = lambda: notes.launched
     monkeypatch.setitem(sys.modules, "rfmpm.ensemble.mpi", ranks)
@@ -89,14 +93,32 @@ def test_run_takes_the_study_at_its_word(campaign):
     call("run", RANDOM)
     assert campaign.directory == Path("results/short_slope_random")
     assert campaign.study == rfmpm.load_study(RANDOM)
-    assert campaign.options == {"realisations": 64, "workers": None, "fresh": False}
+    assert campaign.options == {"realisations": 64, "workers": None, "fresh": False, "indices": None}
 
 
 def test_options_of_run_override_the_study(campaign, tmp_path):
     call("run", RANDOM, "--realisations", 8, "--seed", 5, "--workers", 2, "--fresh", "--out", tmp_path)
     assert (campaign.study.study.seed, campaign.study.study.realisations) == (5, 8)
-    assert campaign.options == {"realisations": 8, "workers": 2, "fresh": True}
+    assert campaign.options == {"realisations": 8, "workers": 2, "fresh": True, "indices": None}
     assert campaign.directory == tmp_path
+
+
+def test_indices_of_run_are_passed_on(campaign, tmp_path):
+    call("run", RANDOM, "--indices", "10:64", "--out", tmp_path)
+    assert campaign.options["indices"] == (10, 64)
+
+
+@pytest.mark.parametrize("text", ["10", "10:10", "12:3", "-1:5", "1:2:3", "a:b"])
+def test_indices_that_are_no_range_are_an_error(campaign, tmp_path, text):
+    result = call("run", RANDOM, "--indices", text, "--out", tmp_path)
+    assert result.exit_code == 2
+    assert f"{text}: must be A:B" in result.stderr
+
+
+def test_indices_beyond_the_study_are_an_error(campaign, tmp_path):
+    result = call("run", RANDOM, "--indices", "10:65", "--out", tmp_path)
+    assert result.exit_code == 2
+    assert "--indices 10:65: the study has 64" in result.stderr
 
 
 def test_overrides_are_validated(campaign, tmp_path):
@@ -112,6 +134,7 @@ def test_overrides_are_validated(campaign, tmp_path):
     [
         (FolderMismatch("results/x: holds results of another study"), 2),
         (LauncherMismatch("the launcher started 2 ranks"), 2),
+        (RowsDiffer("realisation 1 has two different rows"), 2),
         (PermissionError(13, "Permission denied", "results/x"), 2),
         (Interrupted("stopped early with 3 of 64"), 75),
         (KeyboardInterrupt(), 75),
