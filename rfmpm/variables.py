@@ -222,14 +222,14 @@ def _point(name, unit, long_name, dims=("time", "point"), is_active=_always, **a
 
 
 POINT_VARIABLES = _table(
-    _point("x", "m", "horizontal position", axis="X"),
-    _point("y", "m", "height above the base", axis="Y", positive="up"),
+    _point("x", "m", "horizontal position"),
+    _point("y", "m", "height above the base"),
     _point("x_initial", "m", "horizontal position at the start", ("point",)),
     _point("y_initial", "m", "height above the base at the start", ("point",)),
     _point("displacement_x", "m", "horizontal displacement"),
-    _point("displacement_y", "m", "vertical displacement", positive="up"),
+    _point("displacement_y", "m", "vertical displacement", comment="Positive upwards."),
     _point("velocity_x", "m s-1", "horizontal velocity"),
-    _point("velocity_y", "m s-1", "vertical velocity", positive="up"),
+    _point("velocity_y", "m s-1", "vertical velocity", comment="Positive upwards."),
     _point("stress_xx", "Pa", "horizontal normal stress", comment="Tension positive."),
     _point("stress_yy", "Pa", "vertical normal stress", comment="Tension positive."),
     _point("stress_zz", "Pa", "out-of-plane normal stress", comment="Tension positive."),

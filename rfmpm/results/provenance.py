@@ -82,6 +82,7 @@ def global_attributes(study, title: str = "") -> dict[str, Any]:
         "Conventions": "CF-1.11",
         "title": title or study.study.name,
         "source": f"rfmpm {own}",
+        "history": f"written by rfmpm {own}",
         "study": study.to_toml(),
         "study_name": study.study.name,
         "seed": study.study.seed,

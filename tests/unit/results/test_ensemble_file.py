@@ -81,6 +81,12 @@ def test_cf_attributes(stored, study):
     assert {"source_hash", "rfmpm_version", "library_versions"} <= set(stored.attrs)
 
 
+def test_every_variable_has_a_long_name_and_a_unit_or_flags(stored):
+    for name, variable in stored.variables.items():
+        assert variable.attrs["long_name"], name
+        assert {"units", "flag_meanings"} & set(variable.attrs) or name == "status_reason", name
+
+
 def test_missing_variable_is_an_error_that_names_it(study):
     row = finished_row(0)
     del row["influence_distance"]
