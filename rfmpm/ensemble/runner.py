@@ -54,7 +54,8 @@ def run(
     Raises:
         FolderMismatch: if the folder cannot take this campaign; nothing in it was changed.
         LauncherMismatch: if mpirun and the MPI library do not belong together.
-        Interrupted: if it ended early, by a signal or because workers were lost.
+        Interrupted: if it ended early, by a signal, because workers were lost or because something could not be
+            written.
         ValueError: for less than one realisation or worker, for workers under several MPI ranks, or for indices that
             the study does not have.
     """
@@ -68,6 +69,8 @@ def run(
     try:
         with worker.stop.listening(), folder.opened(worker.directory, study, fresh) as journal:
             return _campaign(crew, worker, journal, asked, fresh, progress)
+    except OSError as error:
+        raise Interrupted(f"stopped early: {error}\nmend that and run the same command again to continue") from error
     finally:
         crew.close()
 
