@@ -11,7 +11,6 @@ from typing import Any
 
 STATUS_FILE = "status.json"
 STUDY_FILE = "study.toml"
-ENSEMBLE_FILE = "ensemble.nc"
 SEGMENTS = "segments"
 RUNNING, STOPPED, COMPLETE, FAILED = "running", "stopped", "complete", "failed"
 QUIET = 60.0  # seconds without news after which a campaign that says it runs is doubted
@@ -79,48 +78,45 @@ def _is_alive(pid: Any) -> bool:
     return True
 
 
-def estimate_so_far(directory: Path) -> dict[str, Any] | None:
+def estimate_so_far(directory: Path, first: int = 0) -> dict[str, Any] | None:
     """Estimate P(run-out > limit) from what is finished without a gap in the indices.
 
-    What is finished beyond a gap was finished because it was quick, and is no fair sample. The files are not checked
-    against their hashes.
+    What is finished beyond a gap was finished because it was quick, and is no fair sample.
 
     Args:
         directory: of the campaign.
+        first: index at which it begins.
 
     Returns:
         limit_m, value, lower, upper, confidence and n; None if nothing is finished without a gap.
     """
     directory = Path(directory)
-    merged = directory / ENSEMBLE_FILE
-    paths = [*([merged] if merged.is_file() else []), *sorted((directory / SEGMENTS).glob("*.nc"))]
+    paths = sorted((directory / SEGMENTS).glob("*.rows"))
     if not paths or not (columns := list(_columns(paths))):
         return None
     import numpy as np
 
     index, run_out, censored = (np.concatenate(parts) for parts in zip(*columns, strict=True))
-    index, first = np.unique(index, return_index=True)
-    n = int(np.sum(index == np.arange(index.size)))
+    index, place = np.unique(index, return_index=True)
+    index, place = index[index >= first], place[index >= first]
+    n = int(np.sum(index == first + np.arange(index.size)))
     if n == 0:
         return None
     from rfmpm.estimators import exceedance
 
     limit = float(tomllib.loads((directory / STUDY_FILE).read_text("utf-8"))["quantities"]["run_out_limit_m"])
-    found = exceedance(run_out[first][:n], limit, censored[first][:n])
+    found = exceedance(run_out[place][:n], limit, censored[place][:n])
     names = ("value", "lower", "upper", "confidence", "n")
     return {"limit_m": limit, **{name: getattr(found, name) for name in names}}
 
 
 def _columns(paths: Iterable[Path]) -> Iterator[tuple]:
     """Index, run-out (NaN where it failed) and whether that is a lower bound, of every readable file of rows."""
-    import netCDF4
-    import numpy as np
+    from rfmpm.results.row_files import UnreadableRows, read_rows
 
     for path in paths:
         try:
-            with netCDF4.Dataset(path) as stored:
-                run_out = np.ma.filled(stored["run_out"][:].astype(float), np.nan)
-                censored = np.ma.filled(stored["run_out_censored"][:], 0) == 1
-                yield np.asarray(stored["realisation"][:]), run_out, censored
-        except (OSError, IndexError, RuntimeError):  # torn, or put aside or merged this moment
+            columns = read_rows(path).columns
+        except (OSError, UnreadableRows):  # torn, or put aside this moment
             continue
+        yield columns["realisation"], columns["run_out"], columns["run_out_censored"] == 1

@@ -153,6 +153,11 @@ def run(
     except OutOfTime:
         reason = f"took longer than failures.realisation_time_limit_s = {limit:g} s"
         return failed_row(prepared.study, index, "timeout", reason, level, time.perf_counter() - started)
+    return as_row(outcome, index, level)
+
+
+def as_row(outcome: Outcome, index: int, level: int = 0) -> dict[str, Any]:
+    """Make the row of a simulated realisation: every active variable by name."""
     return outcome.quantities | {
         "realisation": index,
         "level": level,

@@ -130,7 +130,7 @@ VARIABLES = _table(
         "wall_time",
         "s",
         "computing time",
-        "Elapsed time of this realisation on its worker; the one variable that differs from run to run.",
+        "Elapsed time of this realisation on its worker; differs from run to run.",
     ),
     _quantity(
         "plastic_work_share",
@@ -169,8 +169,34 @@ VARIABLES = _table(
     ),
 )
 
+PROVENANCE = _table(
+    _quantity(
+        "attempt",
+        "1",
+        "number of starts until it ended",
+        "1 unless an earlier start took its worker with it or was tried again; differs from run to run.",
+        "int32",
+    ),
+    _quantity(
+        "origin",
+        "1",
+        "where it was computed",
+        "Number of the line of the global attribute origins that names machine and versions; differs from run to run.",
+        "int32",
+    ),
+)
+
+RUN_DEPENDENT = frozenset({"wall_time", *PROVENANCE})  # no part of what a campaign found: left out of its hash
+
 COORDINATES = _table(
-    Variable("realisation", ("realisation",), "int64", "1", "index of the realisation"),
+    Variable(
+        "realisation",
+        ("realisation",),
+        "int64",
+        "1",
+        "index of the realisation",
+        {"comment": "Computed again, bit for bit, by: rfmpm rerun DIR --index INDEX."},
+    ),
     Variable(
         "level",
         ("realisation",),
@@ -196,14 +222,14 @@ def _point(name, unit, long_name, dims=("time", "point"), is_active=_always, **a
 
 
 POINT_VARIABLES = _table(
-    _point("x", "m", "horizontal position", axis="X"),
-    _point("y", "m", "height above the base", axis="Y", positive="up"),
+    _point("x", "m", "horizontal position"),
+    _point("y", "m", "height above the base"),
     _point("x_initial", "m", "horizontal position at the start", ("point",)),
     _point("y_initial", "m", "height above the base at the start", ("point",)),
     _point("displacement_x", "m", "horizontal displacement"),
-    _point("displacement_y", "m", "vertical displacement", positive="up"),
+    _point("displacement_y", "m", "vertical displacement", comment="Positive upwards."),
     _point("velocity_x", "m s-1", "horizontal velocity"),
-    _point("velocity_y", "m s-1", "vertical velocity", positive="up"),
+    _point("velocity_y", "m s-1", "vertical velocity", comment="Positive upwards."),
     _point("stress_xx", "Pa", "horizontal normal stress", comment="Tension positive."),
     _point("stress_yy", "Pa", "vertical normal stress", comment="Tension positive."),
     _point("stress_zz", "Pa", "out-of-plane normal stress", comment="Tension positive."),

@@ -9,6 +9,8 @@ import typer
 
 from rfmpm.cli.benchmark import benchmark
 from rfmpm.cli.endings import TOO_MANY_FAILED, WRONG_STUDY, end, ends_in_words
+from rfmpm.cli.merge import merge
+from rfmpm.cli.rerun import rerun
 from rfmpm.cli.run import OutFolder, StudyFile, run
 from rfmpm.cli.sounding import sounding
 from rfmpm.cli.status import status
@@ -27,6 +29,8 @@ app = typer.Typer(
 app.command("run")(ends_in_words(run))
 app.command("status")(ends_in_words(status))
 app.add_typer(benchmark, name="benchmark")
+app.command("merge")(ends_in_words(merge))
+app.command("rerun")(ends_in_words(rerun))
 app.command("sounding")(ends_in_words(sounding))
 
 Index = Annotated[int, typer.Option("--index", min=0, metavar="I", help="Which realisation.")]

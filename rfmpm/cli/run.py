@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY, end
+from rfmpm.cli.ranges import index_range
 
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.")]
@@ -63,6 +64,9 @@ def run(
         Literal["debug", "info", "warning", "error"],
         typer.Option(help="Of the logs of the workers, DIR/logs/rank-*.log; info: a line for each realisation."),
     ] = "warning",
+    indices: Annotated[
+        str | None, typer.Option(metavar="A:B", help="Only the realisations from A up to B, itself not included.")
+    ] = None,
 ) -> None:
     """Run the campaign, or continue what the folder holds of the same study."""
     from rfmpm.study import load_study
@@ -70,7 +74,13 @@ def run(
     given = {"study.realisations": realisations, "study.seed": seed}
     settings = load_study(study).with_changes({path: value for path, value in given.items() if value is not None})
     folder = out or Path(settings.output.directory)
-    options = {"fresh": fresh, "allow_failed": allow_failed, "wall_time": wall_time, "log_level": log_level}
+    options = {
+        "indices": index_range(indices),
+        "fresh": fresh,
+        "allow_failed": allow_failed,
+        "wall_time": wall_time,
+        "log_level": log_level,
+    }
     dataset = _campaign(settings, folder, workers, options)
     if dataset is None:
         return  # another rank than the first
@@ -87,12 +97,14 @@ def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[st
     from rfmpm import ensemble
     from rfmpm.ensemble.mpi import launched_ranks
 
+    if (part := options["indices"]) is not None and part[1] > settings.study.realisations:
+        end(f"--indices {part[0]}:{part[1]}: the study has {settings.study.realisations}", WRONG_STUDY)
     if workers is not None and (launched_ranks() or 1) > 1:
         end("--workers: the ranks of mpirun are the workers; leave the option out", WRONG_STUDY)
     try:
         number = settings.study.realisations
         return ensemble.run(settings, folder, realisations=number, workers=workers, **options)
-    except (ensemble.FolderMismatch, ensemble.LauncherMismatch) as error:
+    except (ensemble.FolderMismatch, ensemble.LauncherMismatch, ensemble.RowsDiffer) as error:
         end(str(error), WRONG_STUDY)
     except ensemble.CampaignFailed as error:
         end(str(error), TOO_MANY_FAILED)

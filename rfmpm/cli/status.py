@@ -25,7 +25,7 @@ def status(
         end(f"{directory}: no {campaign_status.STATUS_FILE} here; is it the folder of a campaign?", WRONG_STUDY)
     except ValueError as error:
         end(str(error), WRONG_STUDY)
-    found["estimate"] = campaign_status.estimate_so_far(directory)
+    found["estimate"] = campaign_status.estimate_so_far(directory, found["first"])
     if as_json:
         import json
 

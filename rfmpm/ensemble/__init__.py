@@ -2,8 +2,20 @@
 
 from rfmpm.ensemble.books import CampaignFailed
 from rfmpm.ensemble.campaign import Interrupted
+from rfmpm.ensemble.finished import RowsDiffer
 from rfmpm.ensemble.folder import FolderMismatch
 from rfmpm.ensemble.mpi import LauncherMismatch
+from rfmpm.ensemble.parts import merge_parts
 from rfmpm.ensemble.runner import run
+from rfmpm.ensemble.segments import find_row
 
-__all__ = ["CampaignFailed", "FolderMismatch", "Interrupted", "LauncherMismatch", "run"]
+__all__ = [
+    "CampaignFailed",
+    "FolderMismatch",
+    "Interrupted",
+    "LauncherMismatch",
+    "RowsDiffer",
+    "find_row",
+    "merge_parts",
+    "run",
+]

@@ -2,8 +2,7 @@
 
 import logging
 import sys
-from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -14,6 +13,7 @@ from rfmpm.ensemble import folder, segments
 from rfmpm.ensemble.board import Board
 from rfmpm.ensemble.books import FAILED_CODES, Books, CampaignFailed
 from rfmpm.ensemble.dispatcher import Dispatcher, Todo
+from rfmpm.ensemble.finished import NOTHING
 from rfmpm.ensemble.markers import take_left_behind
 from rfmpm.ensemble.progress import Progress
 from rfmpm.ensemble.stop import Abandoned
@@ -35,6 +35,7 @@ class Campaign:
         crew: who works.
         worker: of this process.
         journal: of the folder.
+        asked: the realisations to be had.
         allowed: share of failed realisations that is allowed.
         is_shown: whether progress and remarks are shown on standard error.
 
@@ -42,31 +43,31 @@ class Campaign:
         FolderMismatch: if the rows in the folder are another study's or another version's.
     """
 
-    def __init__(self, crew, worker: Worker, journal, allowed: float, is_shown: bool):
+    def __init__(self, crew, worker: Worker, journal, asked: range, allowed: float, is_shown: bool):
         self.crew, self.worker, self.journal = crew, worker, journal
         self.allowed, self.is_shown = allowed, is_shown
         self.study, self.directory = worker.study, worker.directory
-        self.total = self.study.study.realisations
+        self.asked, self.total = asked, len(asked)
+        self.found = NOTHING
         self._look()
         self.desk = Dispatcher(self.todo, {}, self.books, journal, self.progress)
 
     def _look(self) -> None:
         """Find out what the folder holds."""
-        rows = segments.read_all(self.directory, self.study, self.journal)
-        indices = np.array(sorted(rows), dtype=np.int64)
-        statuses = np.array([rows[index]["status"] for index in indices.tolist()], dtype=np.int64)
-        self.finished = len(indices)
-        self.indices = indices
-        self.todo = Todo(MonteCarlo(self.total).plan(indices))
-        counts = Counter(statuses[indices < self.total].tolist())
+        self.found = segments.finished(self.directory, self.study, self.journal, self.found)
+        plan = MonteCarlo(self.asked.stop).plan(self.found.indices)
+        missing = (range(max(part.start, self.asked.start), part.stop) for part in plan)
+        self.todo = Todo(part for part in missing if part)
+        codes, numbers = np.unique(self.found.between(self.asked.start, self.asked.stop)["status"], return_counts=True)
+        counts = dict(zip(codes.tolist(), numbers.tolist(), strict=True))
         policy = self.study.failures
         self.books = Books(self.total, counts, policy.action, self.allowed, self._examples(counts))
         self.progress = Progress(self.total, self.books.before, self.is_shown)
 
-    def _examples(self, counts: Counter) -> dict[int, tuple[int, str]]:
+    def _examples(self, counts: Mapping[int, int]) -> dict[int, tuple[int, str]]:
         if not FAILED_CODES.intersection(counts):
             return {}
-        events = [event for event in self.journal.events("failed") if event["realisation"] < self.total]
+        events = [event for event in self.journal.events("failed") if event["realisation"] in self.asked]
         return {STATUS[event["status"]]: (event["realisation"], event["reason"]) for event in reversed(events)}
 
     def begin(self, fresh: bool) -> None:
@@ -75,6 +76,7 @@ class Campaign:
         Args:
             fresh: whether results were discarded.
         """
+        (self.directory / folder.RUNNING).mkdir(exist_ok=True)
         origin = {"physics_hash": self.study.physics_hash, "source_hash": results.source_hash(), **results.versions()}
         counts = {"realisations": self.total, "todo": len(self.todo), "workers": self.crew.size}
         self.journal.write("start", fresh=fresh, **counts, **origin)
@@ -97,7 +99,7 @@ class Campaign:
         try:
             yield
         except BaseException as error:
-            state = campaign_status.STOPPED if isinstance(error, Interrupted) else campaign_status.FAILED
+            state = campaign_status.STOPPED if isinstance(error, Interrupted | OSError) else campaign_status.FAILED
             board.close(state, (str(error) or type(error).__name__).splitlines()[-1].strip())
             raise
         else:
@@ -108,6 +110,7 @@ class Campaign:
     def _state(self) -> dict[str, Any]:
         books, progress = self.books, self.progress
         return {
+            "first": self.asked.start,
             "total": self.total,
             "done": sum(books.counts.values()),
             "failed": books.failures(),
@@ -135,10 +138,10 @@ class Campaign:
                 return
             if idle == ISOLATED_FROM:
                 self._interrupt("workers die and nothing gets done", losses)
-            before, stopped_by = self.finished, self._round()
+            before, stopped_by = self.found.count, self._round()
             losses += self.desk.losses
             self._look()
-            idle = 0 if self.finished > before else idle + 1
+            idle = 0 if self.found.count > before else idle + 1
             if stopped_by and self.todo:
                 self._interrupt(stopped_by, losses)
 
@@ -169,5 +172,5 @@ class Campaign:
 
     def _note_unfinished(self) -> None:
         for marker in take_left_behind(self.directory):
-            if marker["realisation"] not in self.indices:
+            if marker["realisation"] not in self.found.indices:
                 self.journal.write("unfinished_start", **marker)

@@ -50,7 +50,6 @@ def opened(directory: Path, study, fresh: bool) -> Iterator["Journal"]:
         try:
             (directory / SEGMENTS).mkdir(parents=True, exist_ok=True)
             held.enter_context(locked(directory, now()))
-            (directory / RUNNING).mkdir(exist_ok=True)
             if fresh:
                 _discard(directory)
             _sweep(directory)
@@ -150,7 +149,6 @@ def _discard(directory: Path) -> None:
         else:
             path.unlink(missing_ok=True)
     (directory / SEGMENTS).mkdir()
-    (directory / RUNNING).mkdir()
 
 
 def _sweep(directory: Path) -> None:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from rfmpm import results
 from rfmpm.ensemble import folder, segments
-from rfmpm.ensemble.campaign import Campaign
+from rfmpm.ensemble.campaign import Campaign, Interrupted
+from rfmpm.ensemble.finished import Finished
 from rfmpm.ensemble.mpi import Ranks, launched_ranks
 from rfmpm.ensemble.processes import Processes
 from rfmpm.ensemble.stop import LOOK_EVERY, Stop
@@ -28,6 +29,7 @@ def run(
     fresh: bool = False,
     progress: bool = True,
     *,
+    indices: tuple[int, int] | None = None,
     allow_failed: float | None = None,
     wall_time: float | None = None,
     log_level: str = "warning",
@@ -43,23 +45,28 @@ def run(
         workers: local processes; as many as there are processors if None.
         fresh: discard the results the folder holds.
         progress: show progress on standard error.
+        indices: run the realisations from the first of these up to the second, itself not included, as a part of the
+            study; all of them if None.
         allow_failed: share of failed realisations that is allowed; the study's `failures.max_failed_fraction` if None.
         wall_time: time after which the campaign ends to be continued later [s]; no limit if None.
         log_level: of logs/rank-<rank>.log.
 
     Returns:
-        The first `realisations` rows; None on every MPI rank but 0.
+        The rows that were asked for; None on every MPI rank but 0.
 
     Raises:
         FolderMismatch: if the folder cannot take this campaign; nothing in it was changed.
         LauncherMismatch: if mpirun and the MPI library do not belong together.
-        Interrupted: if it ended early, by a signal, by its wall time or because workers were lost.
+        Interrupted: if it ended early, by a signal, by its wall time because workers were lost or because something
+            could not be written.
         CampaignFailed: if the failure policy of the study ended it.
-        ValueError: for less than one realisation or worker, or for workers under several MPI ranks.
+        ValueError: for less than one realisation or worker, for workers under several MPI ranks, or for indices that
+            the study does not have.
     """
     deadline = inf if wall_time is None else time.monotonic() + wall_time
     if realisations is not None:
         study = study.with_changes({"study.realisations": realisations})
+    asked = _asked(study.study.realisations, indices)
     crew = _crew(workers)
     stop = Stop(deadline, max(LOOK_EVERY, crew.size / LOOKS))
     worker = Worker(study, Path(directory), stop, log_level)
@@ -70,15 +77,22 @@ def run(
     allowed = study.failures.max_failed_fraction if allow_failed is None else allow_failed
     try:
         with stop.listening(), folder.opened(worker.directory, study, fresh) as journal:
-            campaign = Campaign(crew, worker, journal, allowed, progress)
+            campaign = Campaign(crew, worker, journal, asked, allowed, progress)
             campaign.begin(fresh)
             with campaign.posted():
                 campaign.carry_out()
-                rows = segments.read_all(worker.directory, study, journal)
-                total = study.study.realisations
-                return _finish(study, worker.directory, [rows[index] for index in range(total)], journal)
+                return _finish(study, worker.directory, asked, campaign.found, journal)
+    except OSError as error:
+        raise Interrupted(f"stopped early: {error}\nmend that and run the same command again to continue") from error
     finally:
         crew.close()
+
+
+def _asked(total: int, indices: tuple[int, int] | None) -> range:
+    first, stop = (0, total) if indices is None else indices
+    if not 0 <= first < stop <= total:
+        raise ValueError(f"indices = {first}:{stop}: must be a part, not empty, of 0:{total}")
+    return range(first, stop)
 
 
 def _crew(workers: int | None) -> Processes | Ranks:
@@ -90,11 +104,11 @@ def _crew(workers: int | None) -> Processes | Ranks:
     return Ranks()
 
 
-def _finish(study, directory: Path, rows: list[segments.Row], journal) -> "xr.Dataset":
+def _finish(study, directory: Path, asked: range, found: Finished, journal) -> "xr.Dataset":
     path = directory / results.ENSEMBLE_FILE
-    merged = results.dataset(rows, study, {"start": journal.started(), "end": journal.ended()})
-    results.write_dataset(path, merged)
+    when = {"start": journal.started(), "end": journal.ended()}
+    content_hash = segments.merge(directory, study, journal, asked.stop, path, when, asked.start, found)
     for name in (folder.WORK, folder.RUNNING):
         shutil.rmtree(directory / name, ignore_errors=True)
-    journal.write("stop", complete=True, content_hash=merged.attrs["content_hash"])
+    journal.write("stop", complete=True, content_hash=content_hash)
     return results.open_ensemble(path)

@@ -2,24 +2,27 @@
 
 import logging
 import os
-import secrets
 import shutil
 import time
+from collections.abc import Iterator, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rfmpm import results
+from rfmpm.ensemble.finished import NOTHING, PLACES, Finished, Segment, one_each
 from rfmpm.ensemble.folder import QUARANTINE, SEGMENTS, FolderMismatch
+from rfmpm.variables import active_variables
 
 log = logging.getLogger("rfmpm")
 
-ROWS = 16
-SECONDS = 10.0
+ROWS = 4096
+SECONDS = 20.0  # a worker that is killed takes so much of its work with it
 Row = dict[str, Any]
 
-
-class RowsDiffer(RuntimeError):
-    """Two rows of one realisation that are not the same, which no campaign can produce."""
+_BLOCK = 2**26  # bytes of the rows that are merged at once
 
 
 class SegmentWriter:
@@ -29,10 +32,15 @@ class SegmentWriter:
         self.folder, self.study, self.rank = Path(directory) / SEGMENTS, study, rank
         self.rows: list[Row] = []
         self.counter = 0
-        self.since = 0.0
+        self.since = time.monotonic()
+
+    @cached_property
+    def attributes(self) -> dict[str, Any]:
+        """What every segment of this worker says about its rows."""
+        return results.row_attributes(self.study)
 
     def add(self, row: Row) -> list[dict]:
-        """Take a finished row; write a segment if enough rows or enough time have gathered.
+        """Take a finished row; write a segment if enough rows have gathered, or enough time since the last one.
 
         Args:
             row: of one realisation.
@@ -43,8 +51,6 @@ class SegmentWriter:
         Raises:
             OSError: if the segment cannot be written.
         """
-        if not self.rows:
-            self.since = time.monotonic()
         self.rows.append(row)
         is_due = len(self.rows) >= ROWS or time.monotonic() - self.since >= SECONDS
         return self.flush() if is_due else []
@@ -53,46 +59,154 @@ class SegmentWriter:
         """Write the rows at hand, if there are any; returns and raises as `add`."""
         if not self.rows:
             return []
-        name = f"{self.rank:05d}-{os.getpid()}-{self.counter:05d}-{secrets.token_hex(4)}.nc"
-        results.write_rows(self.folder / name, self.rows, self.study)
-        written = {"segment": name, "realisations": [int(row["realisation"]) for row in self.rows]}
-        self.rows, self.counter = [], self.counter + 1
+        stem = f"{self.rank:05d}-{os.getpid()}-{self.counter:05d}"
+        path = results.write_rows(self.folder, stem, results.columns(self.rows, self.study), self.attributes)
+        written = {"segment": path.name, "realisations": [int(row["realisation"]) for row in self.rows]}
+        self.rows, self.counter, self.since = [], self.counter + 1, time.monotonic()
         return [written]
 
 
-def read_all(directory: Path, study, journal) -> dict[int, Row]:
-    """Read every valid segment of a folder; a file that is not valid goes to quarantine and its rows count as missing.
+def finished(directory: Path, study, journal, earlier: Finished = NOTHING) -> Finished:
+    """Find out which realisations have a valid row; a segment that is not valid counts as if it were not there.
+
+    Rows without the surface that the study asks for, or with other bins, are no finished ones: they run again.
 
     Args:
         directory: of the campaign.
         study: the study that is run.
-        journal: where a quarantined file is noted.
+        journal: where a damaged segment is noted, which goes to quarantine; None leaves it where it is.
+        earlier: what the same function found before, there or in another folder; only other segments are read, and
+            their rows are added.
 
     Returns:
-        Realisation -> row.
+        The finished realisations.
 
     Raises:
         FolderMismatch: if the rows were made by another study or another version of the sources.
         RowsDiffer: if two rows of one realisation are not the same.
     """
-    rows: dict[int, Row] = {}
-    for path in sorted((Path(directory) / SEGMENTS).glob("*.nc")):
-        try:
-            found, attributes = results.read_rows(path)
-        except results.UnreadableRows as error:
-            _quarantine(path, str(error), journal)
+    known, physics_hash = {segment.path for segment in earlier.segments}, study.physics_hash
+    segments, places = list(earlier.segments), [earlier.places]
+    for path in sorted((Path(directory) / SEGMENTS).glob(f"*{results.ROWS_SUFFIX}")):
+        if path in known or (stored := _valid(path, journal)) is None:
             continue
-        _check_origin(path, attributes, study)
-        for row in found:
-            index = int(row["realisation"])
-            if index in rows and not _is_same(rows[index], row, study):
-                raise RowsDiffer(f"realisation {index} has two different rows; the second is in {path}")
-            rows.setdefault(index, row)
-    return rows
+        _check_origin(path, stored.attributes, physics_hash)
+        found = np.empty(len(stored.columns["realisation"]), PLACES)
+        found["realisation"], found["status"] = stored.columns["realisation"], stored.columns["status"]
+        found["segment"], found["row"] = len(segments), np.arange(len(found))
+        segments.append(Segment(path, _origin(stored.attributes), _is_whole(stored.attributes, study)))
+        places.append(found)
+    return Finished(tuple(segments), one_each(segments, np.concatenate(places)))
 
 
-def _is_same(first: Row, second: Row, study) -> bool:
-    return len({results.content_hash(results.dataset([row], study)) for row in (first, second)}) == 1
+def merge(
+    directory: Path,
+    study,
+    journal,
+    total: int,
+    path: Path,
+    attributes: Mapping[str, Any],
+    first: int = 0,
+    known: Finished = NOTHING,
+) -> str:
+    """Write the finished rows as one dataset, in bounded memory.
+
+    Args:
+        directory: of the campaign.
+        study: the study that is run.
+        journal: as for `finished`.
+        total: realisations up to this one are taken, itself not included.
+        path: the file to be written.
+        attributes: further global attributes.
+        first: the first realisation that is taken.
+        known: what `finished` found before.
+
+    Returns:
+        Hash of the content.
+
+    Raises:
+        ValueError: if a realisation has no row.
+        OSError: if the file cannot be written.
+        FolderMismatch, RowsDiffer: as `finished`.
+    """
+    found = finished(directory, study, journal, known)
+    places = found.between(first, total)
+    if len(places) < total - first:
+        raise ValueError(f"{directory}: {total - first - len(places)} of {total - first} realisations have no row")
+    used = np.unique(places["segment"])
+    origins = sorted({found.segments[segment].origin for segment in used})
+    lines = "\n".join(f"{number}: {origin}" for number, origin in enumerate(origins))
+    names = ["realisation", "level", "attempt", *(variable.name for variable in active_variables(study))]
+    described = {**attributes, "origins": lines, **_part(first, total, study)}
+    return results.write_ensemble(path, study, len(places), _blocks(found, places, origins, names), described)
+
+
+def _part(first: int, total: int, study) -> dict[str, int]:
+    """What a dataset says that holds a part of the study."""
+    if (first, total) == (0, study.study.realisations):
+        return {}
+    return {"first_realisation": first, "realisations_of_study": study.study.realisations}
+
+
+def find_row(directory: Path, index: int) -> results.StoredRows:
+    """Read the row of one realisation, of whatever study and version, complete campaign or not.
+
+    Args:
+        directory: of the campaign.
+        index: of the realisation.
+
+    Returns:
+        The row, each column of shape (1,) or (1, bins), and what its segment says about it.
+
+    Raises:
+        LookupError: if no valid segment has it.
+    """
+    for path in sorted((Path(directory) / SEGMENTS).glob(f"*{results.ROWS_SUFFIX}")):
+        if (stored := _valid(path, None)) is None:
+            continue
+        at = np.flatnonzero(stored.columns["realisation"] == index)
+        if len(at):
+            return results.StoredRows({name: values[at] for name, values in stored.columns.items()}, stored.attributes)
+    raise LookupError(f"{directory}: realisation {index} has no row here; has it been run?")
+
+
+def _blocks(found: Finished, places: np.ndarray, origins, names) -> Iterator[results.Columns]:
+    """Gather rows that follow each other from the segments they are scattered over."""
+    start, step = 0, 1
+    while start < len(places):
+        block = places[start : start + step]
+        taken = {"origin": np.empty(len(block), "i4")}
+        for number in np.unique(block["segment"]):
+            segment = found.segments[number]
+            stored = results.read_rows(segment.path).columns
+            at = np.flatnonzero(block["segment"] == number)
+            taken["origin"][at] = origins.index(segment.origin)
+            for name in names:
+                values = stored[name][block["row"][at]]
+                taken.setdefault(name, np.empty((len(block), *values.shape[1:]), values.dtype))[at] = values
+        yield taken
+        start += len(block)
+        step = max(1, _BLOCK // sum(values.nbytes // len(block) for values in taken.values()))
+
+
+def _origin(attributes: Mapping[str, Any]) -> str:
+    return f"{attributes['host']}; rfmpm {attributes['rfmpm_version']}, {attributes['library_versions']}"
+
+
+def _is_whole(attributes: Mapping[str, Any], study) -> bool:
+    asked = study.output.surface_bin_m
+    return asked is None or attributes.get("surface_bin_m") == asked
+
+
+def _valid(path: Path, journal) -> results.StoredRows | None:
+    try:
+        return results.read_rows(path)
+    except results.UnreadableRows as error:
+        if journal is None:
+            log.warning("%s; its realisations count as missing", error)
+        else:
+            _quarantine(path, str(error), journal)
+        return None
 
 
 def _quarantine(path: Path, reason: str, journal) -> None:
@@ -103,12 +217,13 @@ def _quarantine(path: Path, reason: str, journal) -> None:
     journal.write("quarantine", segment=path.name, reason=reason)
 
 
-def _check_origin(path: Path, attributes: dict, study) -> None:
-    if attributes.get("physics_hash") != study.physics_hash:
+def _check_origin(path: Path, attributes: Mapping[str, Any], physics_hash: str) -> None:
+    if attributes.get("physics_hash") != physics_hash:
         raise FolderMismatch(f"{path}: holds rows of another study; choose another folder, or discard with --fresh")
     if attributes.get("source_hash") != results.source_hash():
         raise FolderMismatch(
             f"{path.parents[1]}: its results were made by another version of the program "
             f"({attributes.get('rfmpm_version')}, sources {str(attributes.get('source_hash'))[:12]}; "
-            f"here {results.source_hash()[:12]}); discard them with --fresh, or choose another folder with --out"
+            f"here {results.source_hash()[:12]}); use that version, discard them with --fresh, or choose another "
+            "folder with --out"
         )

@@ -109,7 +109,7 @@ class Worker:
         while (task := claim(report)) is not None:
             started = time.perf_counter()
             marker.put(task)
-            row = self._run(task)
+            row = {**self._run(task), "attempt": task.attempt}
             ended = Ended(task.realisation, int(row["status"]), str(row["status_reason"]), _since(started))
             name = STATUS_NAMES[ended.status]
             log.info("realisation %d: %s in %.3g s %s", ended.realisation, name, ended.wall_time, ended.reason)

@@ -59,30 +59,33 @@ def exceedance_curve(values, limits=None, censored=None, confidence: float = 0.9
     )
 
 
-def running_mean(values, confidence: float = 0.95) -> Band:
+def running_mean(values, confidence: float = 0.95, at=None) -> Band:
     """Follow the mean and its Student t interval as realisations are added in the order of their indices.
 
     Args:
         values: one number per realisation, shape (n,); NaN where the realisation failed (left out).
         confidence: level of the band [-].
+        at: numbers of realisations for which the band is wanted, shape (k,), each 1 to n; None for all of them.
 
     Returns:
-        Band over the number of realisations 1 to n; NaN before the first completed one.
+        Band over `at`; NaN before the first completed one.
     """
     values, failed, _ = as_rows(values, None)
+    at = np.arange(1, values.size + 1) if at is None else np.asarray(at)
     n = np.cumsum(~failed)
     # Sums of deviations from the overall mean: sums of the squares themselves would cancel.
     shift = float(values[~failed].mean()) if n.size and n[-1] else 0.0
     deviation = np.where(failed, 0.0, values - shift)
-    total, squares = np.cumsum(deviation), np.cumsum(deviation**2)
+    total, squares = np.cumsum(deviation)[at - 1], np.cumsum(deviation**2)[at - 1]
+    n = n[at - 1]
     trials = np.maximum(n, 1)
     value = np.where(n > 0, shift + total / trials, np.nan)
     variance = np.maximum(squares - total**2 / trials, 0.0) / np.maximum(n - 1, 1)
     lower, upper = student_t(value, np.sqrt(variance), n, confidence)
-    return Band(np.arange(1, values.size + 1), value, lower, upper, confidence)
+    return Band(at, value, lower, upper, confidence)
 
 
-def running_exceedance(values, limit: float, censored=None, confidence: float = 0.95) -> Band:
+def running_exceedance(values, limit: float, censored=None, confidence: float = 0.95, at=None) -> Band:
     """Follow P(X > limit) and its Clopper-Pearson interval as realisations are added in the order of their indices.
 
     Args:
@@ -90,13 +93,14 @@ def running_exceedance(values, limit: float, censored=None, confidence: float = 
         limit: in the unit of the values.
         censored: True where the value is only a lower bound, shape (n,), or None.
         confidence: level of the band at each number of realisations, not of all at once [-].
+        at: numbers of realisations for which the band is wanted, shape (k,), each 1 to n; None for all of them.
 
     Returns:
-        Band over the number of realisations 1 to n; the value is NaN before the first completed one.
+        Band over `at`; the value is NaN before the first completed one.
     """
     values, failed, censored = as_rows(values, censored)
-    n = np.arange(1, values.size + 1)
-    count, n_failed = np.cumsum((values > limit) | censored), np.cumsum(failed)
+    n = np.arange(1, values.size + 1) if at is None else np.asarray(at)
+    count, n_failed = np.cumsum((values > limit) | censored)[n - 1], np.cumsum(failed)[n - 1]
     lower, _ = clopper_pearson(count, n, confidence)
     _, upper = clopper_pearson(count + n_failed, n, confidence)
     value = np.where(n > n_failed, count / np.maximum(n - n_failed, 1), np.nan)

@@ -168,7 +168,7 @@ def contiguous_prefix(indices: Collection[int]) -> int:
     Returns:
         Length of the unbroken run that starts at 0 [-].
     """
-    present = np.unique(np.asarray(list(indices), int))
+    present = np.unique(np.asarray(indices if isinstance(indices, np.ndarray) else list(indices), int))
     return int(np.sum(present == np.arange(present.size)))
 
 

@@ -13,6 +13,8 @@ from rfmpm.estimators.intervals import clopper_pearson
 CONFIDENCE = 0.95
 SPREAD = ("run_out", "failure_volume", "retrogression_distance")
 QUALITY = ("plastic_work_share", "friction_work_share", "numerical_dissipation_share", "energy_balance_error")
+MOST_POINTS = 2000  # of a curve; more would be seen in no picture and make report.json large
+BLOCK = 2**16  # rows whose surfaces are looked at together
 PICTURED = (("median", 0.5), ("95th percentile", 0.95), ("worst", 1.0))
 
 
@@ -21,7 +23,8 @@ class Numbers:
     """What the report says, as numbers in SI units."""
 
     held: int  # rows in the dataset
-    used: int  # rows the estimates rest on: indices 0, 1, 2, ... without a gap
+    first: int  # index of the first row: 0 but in a part of a study
+    used: int  # rows the estimates rest on: indices from the first on without a gap
     completed: int
     limit: float  # [m]
     mean_run_out: estimators.Estimate  # [m]
@@ -54,8 +57,10 @@ def analyse(dataset, study) -> Numbers:
     rows = usable(dataset)
     run_out, censored = rows["run_out"].values, censored_members(rows)
     limit = float(study.quantities.run_out_limit_m)
+    counts = _thinned(np.arange(1, run_out.size + 1))
     return Numbers(
         held=dataset.sizes["realisation"],
+        first=first_index(dataset),
         used=rows.sizes["realisation"],
         completed=int(np.sum(~np.isnan(run_out))),
         limit=limit,
@@ -72,17 +77,34 @@ def analyse(dataset, study) -> Numbers:
         cost=_cost(dataset),
         pictured=_pictured(rows),
         curve=_curve(run_out, censored, limit),
-        running_mean=estimators.running_mean(run_out, CONFIDENCE),
-        running_exceedance=estimators.running_exceedance(run_out, limit, censored, CONFIDENCE),
+        running_mean=estimators.running_mean(run_out, CONFIDENCE, counts),
+        running_exceedance=estimators.running_exceedance(run_out, limit, censored, CONFIDENCE, counts),
         inundation_depth=float(study.quantities.inundation_depth_m),
         inundation=_inundation(rows, study),
     )
 
 
 def usable(dataset):
-    """Return the rows with indices 0, 1, 2, ... up to the first gap, in this order (xarray.Dataset)."""
-    ordered = dataset.sortby("realisation")
-    return ordered.isel(realisation=slice(estimators.contiguous_prefix(ordered["realisation"].values)))
+    """Return the rows with indices 0, 1, 2, ... up to the first gap, in this order (xarray.Dataset).
+
+    Those of a part of a study begin with its own first index.
+    """
+    indices = dataset["realisation"].values
+    if np.any(np.diff(indices) < 0):
+        dataset = dataset.sortby("realisation")
+    return dataset.isel(realisation=slice(estimators.contiguous_prefix(indices - first_index(dataset))))
+
+
+def first_index(dataset) -> int:
+    """Return the index of the first realisation that the dataset is to hold: 0 but in a part of a study."""
+    return int(dataset.attrs.get("first_realisation", 0))
+
+
+def _thinned(values: np.ndarray) -> np.ndarray:
+    """At most MOST_POINTS of the values, evenly spread over their order, the first and the last among them."""
+    if values.size <= MOST_POINTS:
+        return values
+    return values[np.linspace(0, values.size - 1, MOST_POINTS).round().astype(int)]
 
 
 def censored_members(rows) -> np.ndarray:
@@ -143,12 +165,12 @@ def _pictured(rows) -> list[tuple[str, int, float]]:
 
 
 def _curve(run_out: np.ndarray, censored: np.ndarray, limit: float) -> Band | None:
-    """The exceedance curve at its steps, from 0 to a little beyond the last step and the limit."""
+    """The exceedance curve at its steps, or at so many of them, from 0 to a little beyond the last and the limit."""
     steps = np.unique(run_out[~np.isnan(run_out)])
     if not steps.size:
         return None
     start, end = min(0.0, steps[0]), 1.15 * max(steps[-1], limit, 1.0)
-    return estimators.exceedance_curve(run_out, np.unique([start, *steps, end]), censored, CONFIDENCE)
+    return estimators.exceedance_curve(run_out, np.unique([start, *_thinned(steps), end]), censored, CONFIDENCE)
 
 
 def _inundation(rows, study) -> Band | None:
@@ -159,10 +181,12 @@ def _inundation(rows, study) -> Band | None:
 
     distance = rows["x"].values - toe_x(study)
     beyond = distance > 0.0
-    depth = np.nan_to_num(rows["final_surface"].values[:, beyond], nan=0.0)  # no soil in the bin: no depth
-    failed = np.isnan(rows["run_out"].values)
+    surface, failed = rows["final_surface"].values, np.isnan(rows["run_out"].values)
     n, n_failed = failed.size, int(failed.sum())
-    count = np.sum(depth[~failed] >= study.quantities.inundation_depth_m, axis=0)
+    count = np.zeros(int(beyond.sum()), int)
+    for start in range(0, n, BLOCK):
+        depth = surface[start : start + BLOCK, beyond][~failed[start : start + BLOCK]]
+        count += np.sum(depth >= study.quantities.inundation_depth_m, axis=0)  # NaN, no soil in the bin, is not
     lower, _ = clopper_pearson(count, n, CONFIDENCE)
     _, upper = clopper_pearson(count + n_failed, n, CONFIDENCE)
     value = count / (n - n_failed) if n > n_failed else np.full(count.shape, np.nan)

@@ -131,7 +131,7 @@ def _running_mean(numbers: Numbers) -> Picture:
     band = numbers.running_mean
     figure, axes = _convergence(band)
     # The band of the first few realisations would dwarf all the rest: it may leave the picture.
-    settled = (band.at > 0.1 * band.at.size) & np.isfinite(band.lower)
+    settled = (band.at > 0.1 * band.at[-1]) & np.isfinite(band.lower)
     shown = np.concatenate([band.value, band.lower[settled], band.upper[settled]])
     low, high = np.nanmin(shown), np.nanmax(shown)
     margin = max(0.08 * (high - low), 0.1)

@@ -98,6 +98,11 @@ def reservations(numbers: Numbers, study) -> list[str]:
     """
     found = []
     failed, unfinished = numbers.used - numbers.completed, numbers.statuses.get("not_at_rest", 0)
+    if numbers.used < study.study.realisations and numbers.used == numbers.held:
+        found.append(
+            f"This is a part of the study: realisations {numbers.first} to {numbers.first + numbers.used - 1} of "
+            f"{study.study.realisations}, counted from 0."
+        )
     if numbers.used < numbers.held:
         found.append(
             f"Of {numbers.held} realisations on record {numbers.used} are used, those before the first missing index: "

@@ -2,27 +2,23 @@
 
 import contextlib
 import hashlib
-import os
-import secrets
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rfmpm.results.provenance import global_attributes
-from rfmpm.variables import COORDINATES, Variable, active_variables
+from rfmpm.results.row_files import bin_positions, columns, whole_file
+from rfmpm.variables import COORDINATES, PROVENANCE, RUN_DEPENDENT, Variable, active_variables
 
 if TYPE_CHECKING:
     import xarray as xr
 
 ENSEMBLE_FILE = "ensemble.nc"
+_VALUES_AT_ONCE = 2**20  # that a large variable is read and hashed by
 _MISSING_INTEGER = -1  # on disk; NaN in memory
-_NEVER_MISSING = ("status", "realisation", "level", "x")
-
-
-class UnreadableRows(ValueError):
-    """A file of rows that is torn, altered or not one of ours."""
+_NEVER_MISSING = ("status", "realisation", "level", "x", "time", "history_time", *PROVENANCE)
 
 
 def dataset(rows: Sequence[Mapping[str, Any]], study, attributes: Mapping[str, Any] | None = None) -> "xr.Dataset":
@@ -42,19 +38,12 @@ def dataset(rows: Sequence[Mapping[str, Any]], study, attributes: Mapping[str, A
     """
     import xarray as xr
 
-    rows = sorted(rows, key=lambda row: int(row["realisation"]))
-    active = active_variables(study)
-    coordinates = {
-        "realisation": np.array([row["realisation"] for row in rows], "int64"),
-        "level": np.array([row.get("level", 0) for row in rows], "int32"),
-    }
-    data = {}
-    for variable in active:
-        if variable.dims == ("realisation", "x"):
-            data[variable.name] = _surfaces([row[variable.name] for row in rows], study)
-            coordinates["x"] = _bin_centres(study)
-        else:
-            data[variable.name] = _column(variable, [row[variable.name] for row in rows])
+    data = columns(rows, study)
+    data["origin"] = np.zeros(len(rows), "int32")
+    active = [*active_variables(study), *PROVENANCE.values()]
+    coordinates = {name: data[name] for name in ("realisation", "level")}
+    if any("x" in variable.dims for variable in active):
+        coordinates["x"] = bin_positions(study)
     labelled = xr.Dataset(
         {variable.name: labelled_array(variable, data[variable.name], study) for variable in active},
         {name: labelled_array(COORDINATES[name], values, study) for name, values in coordinates.items()},
@@ -90,59 +79,31 @@ def labelled_array(variable: Variable, values: np.ndarray, study) -> "xr.Variabl
     return xr.Variable(variable.dims, values, attributes, encoding)
 
 
-def _column(variable: Variable, values: list) -> np.ndarray:
-    if variable.dtype == "str":
-        return np.array([str(value) for value in values], dtype=object)
-    return np.array(values, "int8" if variable.name == "status" else "float64")
-
-
-def _surfaces(values: list, study) -> np.ndarray:
-    count = len(_bin_centres(study))
-    return np.array([np.broadcast_to(np.asarray(value, "float64"), count) for value in values]).reshape(-1, count)
-
-
-def _bin_centres(study) -> np.ndarray:
-    from rfmpm.mpm.scene import domain_size
-    from rfmpm.quantities.surface import bin_centres
-
-    return bin_centres(domain_size(study)[0], study.output.surface_bin_m)
-
-
 def content_hash(ensemble: "xr.Dataset") -> str:
-    """Hash what a campaign found, wall time and attributes left out; equal for any number of workers.
+    """Hash what a campaign found; equal for any number of workers. Attributes and what depends on the run are left out.
 
     Args:
-        ensemble: as `dataset` makes it or `open_ensemble` reads it.
+        ensemble: as `dataset` makes it or `open_ensemble` reads it; one that is not loaded is read block by block.
 
     Returns:
         sha256, hexadecimal.
     """
     state = hashlib.sha256()
-    for name in sorted(str(name) for name in ensemble.variables if name != "wall_time"):
+    for name in sorted(str(name) for name in ensemble.variables if name not in RUN_DEPENDENT):
         variable = ensemble.variables[name]
         state.update(f"{name}{variable.dims}{variable.shape}".encode())
-        if variable.dtype.kind in "biuf":
-            values = np.array(variable.values, "<f8")
-            values[np.isnan(values)] = np.nan  # one bit pattern for all of them
-            state.update(values.tobytes())
-        else:
-            state.update("\0".join(str(value) for value in variable.values.ravel()).encode())
+        step = max(1, _VALUES_AT_ONCE // max(1, int(np.prod(variable.shape[1:]))))
+        for start in range(0, variable.shape[0], step):
+            state.update(_hashed_bytes(variable[start : start + step].values, is_first=start == 0))
     return state.hexdigest()
 
 
-def write_rows(path: Path, rows: Sequence[Mapping[str, Any]], study, attributes: Mapping | None = None) -> None:
-    """Write rows to a file that survives a crash from the moment it has its name.
-
-    Args:
-        path: the file; replaced if it exists.
-        rows: as for `dataset`.
-        study: the study they belong to.
-        attributes: further global attributes.
-
-    Raises:
-        OSError: if the file cannot be written.
-    """
-    write_dataset(path, dataset(rows, study, attributes))
+def _hashed_bytes(values: np.ndarray, is_first: bool) -> bytes:
+    if values.dtype.kind not in "biuf":
+        return ("" if is_first else "\0").encode() + "\0".join(str(value) for value in values.ravel()).encode()
+    values = np.array(values, "<f8")
+    values[np.isnan(values)] = np.nan  # one bit pattern for all of them
+    return values.tobytes()
 
 
 def write_dataset(path: Path, labelled: "xr.Dataset") -> None:
@@ -155,55 +116,21 @@ def write_dataset(path: Path, labelled: "xr.Dataset") -> None:
     Raises:
         OSError: if the file cannot be written.
     """
-    path = Path(path)
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
-    try:
+    with in_netcdf_words(path), whole_file(Path(path)) as temporary:
         labelled.to_netcdf(temporary, format="NETCDF4", engine="netcdf4")
-        flush_to_disk(temporary)
-        os.replace(temporary, path)
-    except RuntimeError as error:  # what netCDF4 makes of a full disk
-        raise OSError(f"{path}: cannot be written, is the disk full? ({error})") from error
-    finally:
-        temporary.unlink(missing_ok=True)
-    flush_to_disk(path.parent)
 
 
-def flush_to_disk(path: Path) -> None:
-    """Wait until a file, or a folder's list of names, is on the disk; folders where the system allows it.
+@contextlib.contextmanager
+def in_netcdf_words(path: Path) -> Iterator[None]:
+    """Raise OSError for what netCDF4 makes of a full disk.
 
     Args:
-        path: the file or folder.
-    """
-    with contextlib.suppress(PermissionError) if path.is_dir() else contextlib.nullcontext():
-        descriptor = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
-
-
-def read_rows(path: Path) -> tuple[list[dict[str, Any]], dict[str, Any]]:
-    """Read a file of `write_rows` and check it against its own hash.
-
-    Args:
-        path: the file.
-
-    Returns:
-        Rows as they were given, and the global attributes.
-
-    Raises:
-        UnreadableRows: if the file is torn, altered or not one of ours.
+        path: the file that the body writes.
     """
     try:
-        stored = _open(path)
-        is_intact = content_hash(stored) == stored.attrs["content_hash"]
-    except Exception as error:  # a damaged file makes the libraries below raise nearly anything
-        raise UnreadableRows(f"{path}: {type(error).__name__}: {error}") from error
-    if not is_intact:
-        raise UnreadableRows(f"{path}: content does not match its hash")
-    columns = {str(name): stored[name].values for name in stored.variables if name != "x"}
-    rows = [{name: values[i] for name, values in columns.items()} for i in range(stored.sizes["realisation"])]
-    return rows, dict(stored.attrs)
+        yield
+    except RuntimeError as error:
+        raise OSError(f"{path}: cannot be written, is the disk full? ({error})") from error
 
 
 def open_ensemble(source: Path | str) -> "xr.Dataset":

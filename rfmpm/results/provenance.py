@@ -38,6 +38,34 @@ def versions() -> dict[str, str]:
     return found | {name: metadata.version(name) for name in LIBRARIES}
 
 
+def row_attributes(study) -> dict[str, Any]:
+    """Make what files of rows say about all their rows: whose they are, and what computed them where.
+
+    Args:
+        study: the study.
+
+    Returns:
+        Attribute name -> text or number; "surface_bin_m" only where the study keeps a surface.
+    """
+    import platform
+
+    found = versions()
+    own = found.pop("rfmpm")
+    attributes = {
+        "physics_hash": study.physics_hash,
+        "source_hash": source_hash(),
+        "rfmpm_version": own,
+        "library_versions": _listed(found),
+        "host": platform.node(),
+    }
+    width = study.output.surface_bin_m
+    return attributes if width is None else {**attributes, "surface_bin_m": width}
+
+
+def _listed(found: dict[str, str]) -> str:
+    return ", ".join(f"{name} {version}" for name, version in found.items())
+
+
 def global_attributes(study, title: str = "") -> dict[str, Any]:
     """Make the global attributes that every result file carries.
 
@@ -54,11 +82,12 @@ def global_attributes(study, title: str = "") -> dict[str, Any]:
         "Conventions": "CF-1.11",
         "title": title or study.study.name,
         "source": f"rfmpm {own}",
+        "history": f"written by rfmpm {own}",
         "study": study.to_toml(),
         "study_name": study.study.name,
         "seed": study.study.seed,
         "physics_hash": study.physics_hash,
         "source_hash": source_hash(),
         "rfmpm_version": own,
-        "library_versions": ", ".join(f"{name} {version}" for name, version in found.items()),
+        "library_versions": _listed(found),
     }

@@ -8,7 +8,8 @@ from rfmpm.results.netcdf import labelled_array, write_dataset
 from rfmpm.results.provenance import global_attributes
 from rfmpm.variables import HISTORY_VARIABLES, POINT_VARIABLES, Variable
 
-_TIME = {"standard_name": "time", "comment": "Model time since release."}
+# The standard name "time" and the axis T are for times of a calendar ("seconds since ..."), which a model has not.
+_TIME = {"comment": "Model time since release."}
 
 
 def write_simulation(path: Path, outcome, study) -> None:
@@ -55,7 +56,7 @@ def write_simulation(path: Path, outcome, study) -> None:
 
 
 def _time(name: str, values: np.ndarray, study):
-    variable = Variable(name, (name,), "float64", "s", "model time", {**_TIME, "axis": "T"})
+    variable = Variable(name, (name,), "float64", "s", "model time", _TIME)
     return labelled_array(variable, values, study)
 
 

@@ -35,6 +35,7 @@ NOT_PHYSICS = (
     ("study", "name"),
     ("study", "realisations"),
     ("output", "directory"),
+    ("output", "surface_bin_m"),
     ("quantities", "run_out_limit_m"),
     ("quantities", "inundation_depth_m"),
     ("failures",),
@@ -89,7 +90,7 @@ class Study(Table):
         """SHA-256 (hex) of everything that a realisation's result depends on; equal for equal physics."""
         content = self.model_dump(exclude_none=True)
         for *tables, key in NOT_PHYSICS:
-            del (content[tables[0]] if tables else content)[key]
+            (content[tables[0]] if tables else content).pop(key, None)
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
     def to_toml(self) -> str:

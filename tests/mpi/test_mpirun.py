@@ -46,7 +46,7 @@ def test_same_bits_for_any_number_of_ranks(tmp_path, local_hash, ranks):
     done = call(str(MPIRUN), "-n", str(ranks), sys.executable, str(CAMPAIGN), str(tmp_path), REALISATIONS, "", "0.02")
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() == [local_hash]  # printed by rank 0 alone
-    workers = {path.name.split("-")[0] for path in (tmp_path / "segments").glob("*.nc")}
+    workers = {path.name.split("-")[0] for path in (tmp_path / "segments").glob("*.rows")}
     assert len(workers) == ranks
     assert results.content_hash(results.open_ensemble(tmp_path)) == local_hash
 

@@ -9,9 +9,11 @@ import time
 from pathlib import Path
 
 from rfmpm import ensemble, realisation, results
+from rfmpm.ensemble import segments
 from rfmpm.study import load_study
 
 COARSE = Path(__file__).with_name("coarse.toml")
+ROWS_OF_A_SEGMENT = 8  # so that a campaign of seconds writes several
 
 
 def hold_up(seconds: float) -> None:
@@ -28,6 +30,7 @@ def hold_up(seconds: float) -> None:
 
 
 def main(directory: str, realisations: str, workers: str = "", seconds: str = "0", wall_time: str = "") -> int:
+    segments.ROWS = ROWS_OF_A_SEGMENT
     hold_up(float(seconds))
     options = {"progress": False, "wall_time": float(wall_time) if wall_time else None}
     try:

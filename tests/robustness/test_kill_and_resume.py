@@ -35,7 +35,7 @@ def complete(directory: Path, workers: int = 2, **environment: str) -> str:
 
 def wait_for_segment(directory: Path, process: subprocess.Popen) -> None:
     deadline = time.monotonic() + LONGEST
-    while not list((directory / "segments").glob("*.nc")):
+    while not list((directory / "segments").glob("*.rows")):
         assert process.poll() is None, process.communicate()
         assert time.monotonic() < deadline
         time.sleep(0.02)
@@ -63,7 +63,7 @@ def test_killed_campaign_is_completed_by_the_same_call(tmp_path, undisturbed):
     os.killpg(process.pid, signal.SIGKILL)
     process.communicate()
     assert not (tmp_path / "ensemble.nc").exists()
-    survivors = {path.name: path.read_bytes() for path in (tmp_path / "segments").glob("*.nc")}
+    survivors = {path.name: path.read_bytes() for path in (tmp_path / "segments").glob("*.rows")}
     assert survivors
     assert complete(tmp_path) == undisturbed
     for name, content in survivors.items():  # immutable: resuming adds to them

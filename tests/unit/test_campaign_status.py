@@ -77,7 +77,8 @@ def row(study, index, run_out, censored=0.0):
 def segment(directory, study, name, *rows):
     (directory / "segments").mkdir(exist_ok=True)
     (directory / "study.toml").write_text(study.to_toml())
-    results.write_rows(directory / "segments" / f"{name}.nc", rows, study)
+    columns = results.columns(rows, study)
+    return results.write_rows(directory / "segments", name, columns, results.row_attributes(study))
 
 
 def test_estimate_rests_on_the_indices_without_a_gap_and_counts_failed_ones_both_ways(tmp_path, study):
@@ -99,7 +100,12 @@ def test_nothing_is_estimated_where_the_first_one_is_missing(tmp_path, study):
 
 def test_torn_segment_is_passed_over(tmp_path, study):
     segment(tmp_path, study, "a", row(study, 0, 4.0))
-    segment(tmp_path, study, "b", row(study, 1, 4.0))
-    path = tmp_path / "segments" / "b.nc"
+    path = segment(tmp_path, study, "b", row(study, 1, 4.0))
     path.write_bytes(path.read_bytes()[:1000])
     assert campaign_status.estimate_so_far(tmp_path)["n"] == 1
+
+
+def test_part_of_a_study_has_its_estimate_too(tmp_path, study):
+    segment(tmp_path, study, "a", row(study, 1, 9.0), row(study, 4, 9.0), row(study, 5, 1.0), row(study, 7, 9.0))
+    found = campaign_status.estimate_so_far(tmp_path, first=4)
+    assert (found["n"], found["value"]) == (2, 0.5)

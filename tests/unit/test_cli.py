@@ -56,7 +56,11 @@ class CampaignFailed(RuntimeError):
     pass
 
 
-LEFT_OUT = {"allow_failed": None, "wall_time": None, "log_level": "warning"}
+class RowsDiffer(RuntimeError):
+    pass
+
+
+LEFT_OUT = {"indices": None, "allow_failed": None, "wall_time": None, "log_level": "warning"}
 
 
 @pytest.fixture
@@ -71,7 +75,7 @@ def campaign(replace, monkeypatch):
         codes = np.array([STATUS[status] for status in notes.statuses], dtype="int8")
         return None if not notes.statuses else xr.Dataset({"status": ("realisation", codes)})
 
-    errors = (FolderMismatch, LauncherMismatch, Interrupted, CampaignFailed)
+    errors = (FolderMismatch, LauncherMismatch, Interrupted, CampaignFailed, RowsDiffer)
     replace("ensemble", run=run, **{error.__name__: error for error in errors})
     ranks = ModuleType("rfmpm.ensemble.mpi")
     ranks.launched_ranks = lambda: notes.launched
@@ -107,6 +111,24 @@ def test_options_of_run_override_the_study(campaign, tmp_path):
     assert campaign.directory == tmp_path
 
 
+def test_indices_of_run_are_passed_on(campaign, tmp_path):
+    call("run", RANDOM, "--indices", "10:64", "--out", tmp_path)
+    assert campaign.options["indices"] == (10, 64)
+
+
+@pytest.mark.parametrize("text", ["10", "10:10", "12:3", "-1:5", "1:2:3", "a:b"])
+def test_indices_that_are_no_range_are_an_error(campaign, tmp_path, text):
+    result = call("run", RANDOM, "--indices", text, "--out", tmp_path)
+    assert result.exit_code == 2
+    assert f"{text}: must be A:B" in result.stderr
+
+
+def test_indices_beyond_the_study_are_an_error(campaign, tmp_path):
+    result = call("run", RANDOM, "--indices", "10:65", "--out", tmp_path)
+    assert result.exit_code == 2
+    assert "--indices 10:65: the study has 64" in result.stderr
+
+
 def test_overrides_are_validated(campaign, tmp_path):
     result = call("run", RANDOM, "--realisations", 0, "--seed", -1, "--out", tmp_path / "new")
     assert result.exit_code == 2
@@ -120,6 +142,7 @@ def test_overrides_are_validated(campaign, tmp_path):
     [
         (FolderMismatch("results/x: holds results of another study"), 2),
         (LauncherMismatch("the launcher started 2 ranks"), 2),
+        (RowsDiffer("realisation 1 has two different rows"), 2),
         (PermissionError(13, "Permission denied", "results/x"), 2),
         (Interrupted("stopped early with 3 of 64"), 75),
         (CampaignFailed("realisation 3 ended with status crashed"), 3),
@@ -214,6 +237,7 @@ def test_workers_and_ranks_exclude_each_other(campaign, tmp_path):
 NEWS = {
     "state": "stopped",
     "reason": "the limit of --wall-time was reached",
+    "first": 0,
     "total": 400,
     "done": 120,
     "failed": {"crashed": 1, "diverged": 2},

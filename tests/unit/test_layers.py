@@ -13,7 +13,8 @@ FLOORS = {
     7: ("cli",),
     6.5: ("rfmpm", "benchmark"),  # the public names; what measures the whole house
     6: ("ensemble", "report", "cost"),
-    5: ("realisation", "results", "campaign_status"),
+    5.5: ("campaign_status",),
+    5: ("realisation", "results"),
     4.5: ("observer",),
     4: ("quantities", "estimators", "stability"),
     3.5: ("random_fields.properties",),

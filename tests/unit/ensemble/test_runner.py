@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from rfmpm import ensemble, realisation, results
-from rfmpm.ensemble import segments
 from rfmpm.ensemble.worker import Worker
 from rfmpm.variables import STATUS, active_variables, failed_row
 
@@ -143,22 +142,24 @@ def test_worker_that_cannot_write_stops_the_campaign_with_its_reason(study, tmp_
         run(study, tmp_path, 4)
 
 
+def write_changed_copy(directory, name, change):
+    """A second segment like the one of two rows, one value of realisation 1 changed."""
+    (path,) = (directory / "segments").glob("*.rows")
+    stored = results.read_rows(path)
+    changed = {**stored.columns, name: stored.columns[name] + [0.0, change]}
+    results.write_rows(path.parent, "zzz", changed, stored.attributes)
+
+
 def test_rows_that_differ_are_an_error(study, tmp_path):
     run(study, tmp_path, 2)
-    (path,) = (tmp_path / "segments").glob("*.nc")
-    rows, _ = results.read_rows(path)
-    rows[1]["run_out"] += 1e-12
-    results.write_rows(path.with_name("other.nc"), rows, study)
-    with pytest.raises(segments.RowsDiffer, match="realisation 1"):
+    write_changed_copy(tmp_path, "run_out", 1e-12)
+    with pytest.raises(ensemble.RowsDiffer, match="realisation 1 has two different rows: run_out is"):
         run(study, tmp_path, 2)
 
 
 def test_equal_rows_that_differ_in_wall_time_are_one_row(study, tmp_path):
     first = run(study, tmp_path, 2)
-    (path,) = (tmp_path / "segments").glob("*.nc")
-    rows, _ = results.read_rows(path)
-    rows[1]["wall_time"] += 1.0
-    results.write_rows(path.with_name("zzz.nc"), rows, study)
+    write_changed_copy(tmp_path, "wall_time", 1.0)
     again = run(study, tmp_path, 2)
     assert results.content_hash(again) == results.content_hash(first)
     np.testing.assert_array_equal(again["wall_time"], first["wall_time"])  # the first one is kept

@@ -1,3 +1,5 @@
+import numpy as np
+
 from rfmpm import results
 from rfmpm.ensemble import segments
 from rfmpm.variables import failed_row
@@ -12,13 +14,14 @@ def writer(study, tmp_path):
     return segments.SegmentWriter(tmp_path, study, 3)
 
 
-def test_writes_when_enough_rows_have_gathered(study, tmp_path):
+def test_writes_when_enough_rows_have_gathered(study, tmp_path, monkeypatch):
+    monkeypatch.setattr(segments, "ROWS", 16)
     made = writer(study, tmp_path)
     written = [made.add(row) for row in rows(study, segments.ROWS)]
     assert written[:-1] == [[]] * (segments.ROWS - 1)
     assert written[-1][0]["realisations"] == list(range(segments.ROWS))
-    stored, _ = results.read_rows(tmp_path / "segments" / written[-1][0]["segment"])
-    assert [int(row["realisation"]) for row in stored] == list(range(segments.ROWS))
+    stored = results.read_rows(tmp_path / "segments" / written[-1][0]["segment"])
+    np.testing.assert_array_equal(stored.columns["realisation"], range(segments.ROWS))
 
 
 def test_writes_when_enough_time_has_passed(study, tmp_path, monkeypatch):
@@ -36,9 +39,9 @@ def test_writes_when_enough_time_has_passed(study, tmp_path, monkeypatch):
 
 def test_names_never_repeat(study, tmp_path):
     names = set()
-    for _ in range(3):
+    for repeat in range(3):
         made = writer(study, tmp_path)
         for row in rows(study, 2):
-            made.add(row)
+            made.add(row | {"wall_time": float(repeat)})
             names |= {entry["segment"] for entry in made.flush()}
     assert len(names) == 6

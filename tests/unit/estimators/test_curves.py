@@ -64,3 +64,13 @@ def test_running_estimates_equal_the_plain_ones_on_every_prefix(values):
 def test_running_probability_counts_censored_as_exceeding():
     band = running_exceedance([1.0, 1.0], 5.0, censored=[True, False])
     np.testing.assert_array_equal(band.value, [1.0, 0.5])
+
+
+def test_running_bands_at_some_numbers_of_realisations_are_those_of_all():
+    at = np.array([1, 4, 9])
+    whole = (running_mean(VALUES), running_exceedance(VALUES, 5.0, CENSORED))
+    some = (running_mean(VALUES, at=at), running_exceedance(VALUES, 5.0, CENSORED, at=at))
+    for every, few in zip(whole, some, strict=True):
+        np.testing.assert_array_equal(few.at, at)
+        for name in ("value", "lower", "upper"):
+            np.testing.assert_array_equal(getattr(few, name), getattr(every, name)[at - 1])

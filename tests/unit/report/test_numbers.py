@@ -8,6 +8,7 @@ from synthetic import make_ensemble, make_study
 
 from rfmpm import estimators
 from rfmpm.mpm.scene import toe_x
+from rfmpm.report import numbers as numbers_of_report
 from rfmpm.report import summary_lines
 from rfmpm.report.numbers import analyse, as_json
 
@@ -65,6 +66,28 @@ def test_inundation_falls_from_the_toe_and_matches_a_count(study):
     assert np.all(np.diff(band.value) <= 0.0)
     assert np.all((band.lower <= band.value) & (band.value <= band.upper))
     assert band.upper[-1] == estimators.exceedance(ensemble["run_out"].values, 1e9).upper  # the two failed count
+
+
+def test_inundation_does_not_depend_on_how_many_rows_are_looked_at_together(study, monkeypatch):
+    ensemble = make_ensemble(study, failed=(5, 40))
+    expected = analyse(ensemble, study).inundation
+    monkeypatch.setattr(numbers_of_report, "BLOCK", 7)
+    np.testing.assert_array_equal(analyse(ensemble, study).inundation.value, expected.value)
+
+
+def test_curves_of_many_realisations_have_few_points_which_are_those_of_all(study, monkeypatch):
+    ensemble = make_ensemble(study, failed=(5, 40))
+    every = analyse(ensemble, study)
+    monkeypatch.setattr(numbers_of_report, "MOST_POINTS", 10)
+    few = analyse(ensemble, study)
+    assert few.running_mean.at.tolist() == few.running_exceedance.at.tolist() == [1, 8, 15, 22, 29, 36, 43, 50, 57, 64]
+    assert few.curve.at.size == 12  # the two ends stand beside the steps
+    for name in ("running_mean", "running_exceedance", "curve"):
+        band, whole = getattr(few, name), getattr(every, name)
+        at = np.searchsorted(whole.at, band.at)
+        np.testing.assert_array_equal(whole.at[at], band.at)
+        np.testing.assert_array_equal(band.value, whole.value[at])
+        np.testing.assert_array_equal(band.lower, whole.lower[at])
 
 
 def test_without_surface_there_is_no_inundation():

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from rfmpm import results
-from rfmpm.results import netcdf
+from rfmpm.results import netcdf, row_files
 from rfmpm.variables import FAILED, STATUS, VARIABLES, failed_row
 
 BINS = 16  # the coarse domain is 4 + 4 + 8 m long
@@ -26,8 +26,16 @@ def rows(study):
 
 @pytest.fixture
 def stored(study, rows, tmp_path):
-    results.write_rows(tmp_path / "ensemble.nc", rows, study)
+    write_ensemble(tmp_path / "ensemble.nc", rows, study)
     return results.open_ensemble(tmp_path)
+
+
+def write_ensemble(path, rows, study, size=2):
+    """Write rows in blocks of `size`."""
+    found = results.columns(rows, study)
+    found["origin"] = np.zeros(len(rows), "int32")
+    blocks = [{name: values[i : i + size] for name, values in found.items()} for i in range(0, len(rows), size)]
+    return results.write_ensemble(path, study, len(rows), blocks)
 
 
 def test_rows_come_back_sorted_and_exact(stored, study):
@@ -73,6 +81,12 @@ def test_cf_attributes(stored, study):
     assert {"source_hash", "rfmpm_version", "library_versions"} <= set(stored.attrs)
 
 
+def test_every_variable_has_a_long_name_and_a_unit_or_flags(stored):
+    for name, variable in stored.variables.items():
+        assert variable.attrs["long_name"], name
+        assert {"units", "flag_meanings"} & set(variable.attrs) or name == "status_reason", name
+
+
 def test_missing_variable_is_an_error_that_names_it(study):
     row = finished_row(0)
     del row["influence_distance"]
@@ -115,36 +129,38 @@ def test_hash_survives_the_file(stored, study, rows):
     assert stored.attrs["content_hash"] == results.content_hash(stored)
 
 
-def test_read_rows_gives_what_was_written(study, rows, tmp_path):
-    results.write_rows(tmp_path / "rows.nc", rows, study, {"note": "kept"})
-    found, attributes = results.read_rows(tmp_path / "rows.nc")
-    assert attributes["note"] == "kept"
-    assert results.content_hash(results.dataset(found, study)) == results.content_hash(results.dataset(rows, study))
-    np.testing.assert_array_equal(found[2]["final_surface"], rows[0]["final_surface"])
+@pytest.mark.parametrize("size", [1, 2, 3])
+def test_block_by_block_is_the_same_file_as_at_once(study, rows, tmp_path, size):
+    at_once = results.dataset(rows, study)
+    results.write_dataset(tmp_path / "at_once.nc", at_once)
+    found = write_ensemble(tmp_path / "blocks.nc", rows, study, size)
+    assert found == at_once.attrs["content_hash"]
+    first, second = (results.open_ensemble(tmp_path / name) for name in ("at_once.nc", "blocks.nc"))
+    assert first.identical(second)
+    for name in first.variables:
+        assert first[name].encoding["dtype"] == second[name].encoding["dtype"], name
 
 
-@pytest.mark.parametrize("size", [0, 100, 4000])
-def test_torn_file_is_unreadable(study, rows, tmp_path, size):
-    path = tmp_path / "rows.nc"
-    results.write_rows(path, rows, study)
-    path.write_bytes(path.read_bytes()[:size])
-    with pytest.raises(results.UnreadableRows, match=r"rows\.nc"):
-        results.read_rows(path)
+@pytest.mark.parametrize("most", [1, 7, 40])
+def test_hash_does_not_depend_on_how_much_is_read_at_once(study, rows, monkeypatch, most):
+    expected = results.content_hash(results.dataset(rows, study))
+    monkeypatch.setattr(netcdf, "_VALUES_AT_ONCE", most)
+    assert results.content_hash(results.dataset(rows, study)) == expected
 
 
 def test_file_appears_whole_or_not_at_all(study, rows, tmp_path, monkeypatch):
-    path = tmp_path / "rows.nc"
-    results.write_rows(path, rows[:1], study)
+    path = tmp_path / "ensemble.nc"
+    write_ensemble(path, rows[:1], study)
     before = path.read_bytes()
 
     def fail(*_):
         raise OSError("no space left")
 
-    monkeypatch.setattr(results.netcdf.os, "replace", fail)
+    monkeypatch.setattr(row_files.os, "replace", fail)
     with pytest.raises(OSError, match="no space left"):
-        results.write_rows(path, rows, study)
+        write_ensemble(path, rows, study)
     assert path.read_bytes() == before
-    assert [entry.name for entry in tmp_path.iterdir()] == ["rows.nc"]
+    assert [entry.name for entry in tmp_path.iterdir()] == ["ensemble.nc"]
 
 
 def test_incomplete_campaign_is_said_to_be_so(tmp_path):

@@ -1,0 +1,103 @@
+"""Which realisations of a campaign have a row, and where it lies."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from rfmpm import results
+from rfmpm.variables import FAILED, STATUS
+
+PLACES = np.dtype([("realisation", "i8"), ("segment", "i4"), ("row", "i4"), ("status", "i1")])
+
+
+class RowsDiffer(RuntimeError):
+    """Two rows of one realisation that are not the same, which no campaign can produce."""
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A valid segment."""
+
+    path: Path
+    origin: str  # machine and versions that computed its rows
+    is_whole: bool  # whether its rows have all that the study asks for
+
+
+@dataclass(frozen=True)
+class Finished:
+    """Which realisations have a row and where it lies; 17 bytes each, the rows themselves stay on the disk."""
+
+    segments: tuple[Segment, ...]
+    places: np.ndarray  # one for each realisation on record, sorted; also of rows that lack what the study asks for
+
+    @cached_property
+    def _whole(self) -> np.ndarray:
+        is_whole = np.array([segment.is_whole for segment in self.segments], bool)
+        return self.places[is_whole[self.places["segment"]]]
+
+    @cached_property
+    def indices(self) -> np.ndarray:
+        """Finished realisations, sorted, shape (n,)."""
+        return np.ascontiguousarray(self._whole["realisation"])
+
+    @cached_property
+    def status(self) -> np.ndarray:
+        """Code of STATUS of each of `indices`, shape (n,)."""
+        return np.ascontiguousarray(self._whole["status"])
+
+    @property
+    def count(self) -> int:
+        """Number of finished realisations."""
+        return len(self.indices)
+
+    @property
+    def failed(self) -> int:
+        """How many of them failed."""
+        return int(np.isin(self.status, [STATUS[name] for name in FAILED]).sum())
+
+    def between(self, first: int, stop: int) -> np.ndarray:
+        """Places of the finished realisations from `first` up to `stop`, sorted."""
+        return self._whole[np.searchsorted(self.indices, first) : np.searchsorted(self.indices, stop)]
+
+
+NOTHING = Finished((), np.empty(0, PLACES))
+
+
+def one_each(segments: list[Segment], places: np.ndarray) -> np.ndarray:
+    """Sort by realisation and keep one row each: a whole one before another, then that of the segment found first.
+
+    Args:
+        segments: in which the rows lie.
+        places: of the rows, shape (n,), dtype PLACES.
+
+    Returns:
+        Places sorted by realisation, shape (k,).
+
+    Raises:
+        RowsDiffer: if two rows of one realisation are not the same.
+    """
+    is_whole = np.array([segment.is_whole for segment in segments], bool)
+    places = places[np.lexsort((places["segment"], ~is_whole[places["segment"]], places["realisation"]))]
+    is_repeat = np.concatenate([[False], places["realisation"][1:] == places["realisation"][:-1]])[: len(places)]
+    repeats = np.flatnonzero(is_repeat)
+    if len(repeats):
+        kept = np.flatnonzero(~is_repeat)[np.cumsum(~is_repeat)[repeats] - 1]
+        pairs, group = np.unique(places["segment"][[kept, repeats]], axis=1, return_inverse=True)
+        order = np.argsort(group.ravel(), kind="stable")
+        of_pairs = np.split(order, np.searchsorted(group.ravel()[order], np.arange(1, pairs.shape[1])))
+        for pair, at in zip(pairs.T, of_pairs, strict=True):
+            _compare([segments[number] for number in pair], places[kept[at]], places[repeats[at]])
+    return places[~is_repeat]
+
+
+def _compare(pair: list[Segment], left: np.ndarray, right: np.ndarray) -> None:
+    rows = zip((results.read_rows(segment.path) for segment in pair), (left["row"], right["row"]), strict=True)
+    first, second = ({name: values[at] for name, values in stored.columns.items()} for stored, at in rows)
+    for name, is_different in results.differences(first, second).items():
+        at = int(np.argmax(is_different))
+        raise RowsDiffer(
+            f"realisation {left['realisation'][at]} has two different rows: {name} is {first[name][at]} in "
+            f"{pair[0].path} and {second[name][at]} in {pair[1].path}"
+        )
