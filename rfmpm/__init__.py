@@ -143,6 +143,7 @@ def run_ensemble(
     *,
     workers: int | None = None,
     fresh: bool = False,
+    indices: tuple[int, int] | None = None,
 ) -> "xr.Dataset":
     """Run a campaign, continuing what its folder holds of the same study.
 
@@ -152,6 +153,7 @@ def run_ensemble(
         directory: folder of the results, instead of the study's own.
         workers: number of local processes; by default one for each core.
         fresh: start anew instead of continuing.
+        indices: only the realisations from the first of these up to the second, itself not included.
 
     Returns:
         One row for each realisation, with units and definitions; None on all ranks of an MPI run but the first.
@@ -166,4 +168,6 @@ def run_ensemble(
     if realisations is not None:
         study = study.with_changes({"study.realisations": realisations})
     folder = Path(study.output.directory if directory is None else directory)
-    return ensemble.run(study, folder, realisations=study.study.realisations, workers=workers, fresh=fresh)
+    return ensemble.run(
+        study, folder, realisations=study.study.realisations, workers=workers, fresh=fresh, indices=indices
+    )

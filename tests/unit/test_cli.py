@@ -511,6 +511,6 @@ def test_python_functions_take_anything_that_is_a_study(replace, campaign, tmp_p
     rfmpm.run_ensemble(RANDOM, realisations=32, directory=tmp_path, workers=1)
     assert campaign.study.study.realisations == 32
     assert campaign.directory == tmp_path
-    assert campaign.options == {"realisations": 32, "workers": 1, "fresh": False}
+    assert campaign.options == {"realisations": 32, "workers": 1, "fresh": False, "indices": None}
     with pytest.raises(rfmpm.StudyError, match=r"study\.realisations = 0"):
         rfmpm.run_ensemble(study, realisations=0)
