@@ -3,6 +3,9 @@
 import json
 import os
 import signal
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +15,7 @@ from rfmpm.ensemble.worker import Worker
 from rfmpm.variables import STATUS, active_variables, failed_row
 
 REALISATIONS = 12
+COARSE = Path(__file__).parents[2] / "robustness" / "coarse.toml"
 
 
 def run(study, directory, realisations=REALISATIONS, workers=1, **options):
@@ -281,3 +285,27 @@ def test_who_works_is_said_and_too_many_workers_too(study, tmp_path, capsys):
     assert "1 of 1 realisations to run, 500 local processes on" in (said := capsys.readouterr().err)
     assert "leave out --workers" in said
     assert "one thread each" in said
+
+
+# --- what a worker loads and says
+
+
+def test_log_of_a_worker_has_a_line_for_each_realisation_if_asked(study, tmp_path):
+    run(study, tmp_path, 3, log_level="info")
+    lines = (tmp_path / "logs" / "rank-00000.log").read_text().splitlines()
+    assert len(lines) == 3
+    assert "INFO realisation 2: " in lines[2]
+
+
+def test_worker_loads_only_what_it_needs(tmp_path):
+    code = (
+        "import sys\nfrom rfmpm.ensemble.worker import Worker\nfrom rfmpm.ensemble.segments import SegmentWriter\n"
+        "from rfmpm.study import load_study\nfrom pathlib import Path\n"
+        f"worker = Worker(load_study({str(COARSE)!r}), Path({str(tmp_path)!r}))\nworker.prepare()\n"
+        "(worker.directory / 'segments').mkdir()\nwriter = SegmentWriter(worker.directory, worker.study, 0)\n"
+        "writer.add(worker.run_here(0))\nassert writer.flush()\n"
+        "unneeded = {'matplotlib', 'pandas', 'xarray', 'netCDF4', 'mpi4py', 'rich', 'typer', 'jinja2', 'psutil'}\n"
+        "print('loaded:', sorted(unneeded & sys.modules.keys()))"
+    )
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=240, check=True)
+    assert process.stdout.splitlines()[-1] == "loaded: []"
