@@ -22,7 +22,7 @@ from rfmpm.random_fields.layers import settings_of_soils, soil_of_points
 from rfmpm.random_fields.measurements import Measurements, measurements
 from rfmpm.random_fields.trend import ByDepth, Scaled, Trend
 
-ANYWHERE = ("cholesky", "nufft")  # methods for which points need no lattice
+ANYWHERE = ("cholesky", "local_kriging")  # methods for which points need no lattice
 LARGEST_ANGLE = 80.0 / 180.0 * pi  # [rad], as for an angle that is not random
 
 

@@ -98,7 +98,7 @@ class RandomField(Table):
         "circulant",
         "karhunen_loeve",
         "local_average_subdivision",
-        "nufft",
+        "local_kriging",
     ] = Field("auto", description="How the field is generated; auto: the fastest that is exact or errs by 5e-4 at most")
     averaging: Literal["point", "volume"] = Field(
         "point", description="What a value stands for: the field at the point, or its average over the point's volume"
