@@ -51,7 +51,7 @@ class Soil(NamedTuple):
 
 
 class Cross(NamedTuple):
-    """Correlation between the standard-normal fields of two properties at one point; with data, their covariance."""
+    """Correlation of the standard-normal fields of two properties at one point; with data, conditional covariance."""
 
     between: tuple[str, str]
     statistic: Statistic
@@ -96,7 +96,7 @@ def compare_properties(
             first_two.append(fields)
     found = found_means(products) if correlated else []
     cross = [
-        Cross(pair, Statistic("cross_correlation", 0.0, _asked_cross(properties, watched, pair), *own))
+        Cross(pair, Statistic(_cross_name(watched, pair), 0.0, _asked_cross(properties, watched, pair), *own))
         for pair, own in zip(correlated, found, strict=True)
     ]
     return Comparison({name: [soil.compared() for soil in soils] for name, soils in watched.items()}, cross, first_two)
@@ -184,6 +184,11 @@ def _asked_means(
     if is_conditional(shares):
         return take(asked.means, taken), nan
     return asked.means, asked.deviation * sqrt(variance_of_mean(part.at_crest, part.points[taken[0]]))
+
+
+def _cross_name(watched: dict, pair: tuple[str, str]) -> str:
+    with_data = any(is_conditional(soil.shares) for name in pair for soil in watched[name])
+    return "cross_covariance" if with_data else "cross_correlation"
 
 
 def _product(watched: dict, fields: dict, pair: tuple[str, str]) -> float:

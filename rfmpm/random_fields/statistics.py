@@ -212,7 +212,7 @@ def point_pairs(correlation: Correlation, points: np.ndarray, lags: int = 8) -> 
     for name, (theta, direction) in directions.items():
         for k in range(1, lags + 1):
             lag = 0.25 * k * theta
-            miss, partner = nearest.query(points[base] + lag * direction)
+            miss, partner = nearest.query(points[base] + (1.0 - 1e-9) * lag * direction)  # of two as near: the closer
             kept = (miss <= 0.75 * spacing) & (partner != base)
             if np.any(kept):
                 first, second = base[kept], partner[kept]

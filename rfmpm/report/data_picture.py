@@ -11,7 +11,6 @@ from rfmpm.report.field_table import soil_name
 from rfmpm.report.slope_figures import WIDTH, draw_panel, panel_height, view
 from rfmpm.report.style import (
     BLUE,
-    DOTS_PER_INCH,
     GREY,
     ORANGE,
     STRAIN_MAP,
@@ -19,6 +18,7 @@ from rfmpm.report.style import (
     VERMILION,
     drawing,
     new_figure,
+    save,
 )
 
 CHART_HEIGHT = 3.3  # inches
@@ -32,8 +32,8 @@ class Body(NamedTuple):
         mean: conditional mean, shape (n,).
         deviation: conditional standard deviation, shape (n,).
         sample: two realisations, shape (2, n).
-        places: of the data, shape (d, 2) [m].
-        values: measured, shape (d,).
+        places: of the data, shape (d, 2) [m]; those of an earlier property if only that has data.
+        values: measured, shape (d,); None where the data are of another property.
     """
 
     points: np.ndarray
@@ -41,7 +41,7 @@ class Body(NamedTuple):
     deviation: np.ndarray
     sample: np.ndarray
     places: np.ndarray
-    values: np.ndarray
+    values: np.ndarray | None
 
 
 def draw_conditional(study, index: int, look, entry, soils: Sequence, fields: Sequence[np.ndarray], path: Path) -> None:
@@ -73,7 +73,7 @@ def draw_conditional(study, index: int, look, entry, soils: Sequence, fields: Se
         for soil in soils:
             of = f", {soil_name(soil.part.soil)}" if len(soils) > 1 else ""
             draw_correlations(figure.add_subplot(grid[next(places)]), soil.statistics, of)
-        figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
+        save(figure, path)
 
 
 def _body(entry, soils: Sequence, fields: Sequence[np.ndarray], unit: float) -> Body:
@@ -82,20 +82,19 @@ def _body(entry, soils: Sequence, fields: Sequence[np.ndarray], unit: float) -> 
     from rfmpm.random_fields.statistics import conditional_normal, is_conditional
 
     points, columns = np.empty((entry.count, 2)), np.empty((4, entry.count))
-    places, values = [np.empty((0, 2))], [np.empty(0)]
+    known = [share.conditioning.data.places for soil in soils for share in soil.shares if share.conditioning]
+    values = [soil.part.field.data.values / unit for soil in soils if soil.part.field.data is not None]
     for soil in soils:
         part = soil.part
         marginal, nothing = part.field.marginal, np.zeros(len(part.points))
-        known = conditional_normal(soil.shares) if is_conditional(soil.shares) else (nothing, nothing + 1.0)
+        moments = conditional_normal(soil.shares) if is_conditional(soil.shares) else (nothing, nothing + 1.0)
         points[part.members] = part.points
-        columns[:2, part.members] = conditional_moments(marginal, *known)
+        columns[:2, part.members] = conditional_moments(marginal, *moments)
         columns[2:, part.members] = [marginal.transform(z[part.members]) for z in fields]
-        if part.field.conditioning is not None:
-            places.append(part.field.data.places)
-            values.append(part.field.data.values)
     used = slice(None) if entry.taken is None else np.unique(entry.taken)
     mean, deviation, *sample = columns[:, used] / unit
-    return Body(points[used], mean, deviation, np.array(sample), np.vstack(places), np.concatenate(values) / unit)
+    measured = np.concatenate(values) if values else None
+    return Body(points[used], mean, deviation, np.array(sample), np.vstack(known), measured)
 
 
 def _draw_maps(figure, grid, body: Body, index: int, look, polygon: np.ndarray, frame: tuple) -> None:
@@ -110,14 +109,15 @@ def _draw_maps(figure, grid, body: Body, index: int, look, polygon: np.ndarray, 
         (f"Realisation {index + 1}", body.sample[1], ends, label, STRENGTH_MAP),
         ("Conditional standard deviation", body.deviation, spread, f"[{look.unit}]", STRAIN_MAP),
     ]
-    shown = f"; circles: data, {inside.sum()} of {len(inside)} in the frame" if len(inside) else ""
+    of = "data" if body.values is not None else "data of what it is correlated with"
+    shown = f"; circles: {of}, {inside.sum()} of {len(inside)} in the frame"
     cloud = {"x": body.points[:, 0], "y": body.points[:, 1]}
     circle = {"s": 26, "edgecolors": VERMILION, "lw": 1.0}
     for row, (title, values, colours, words, colour_map) in enumerate(panels):
         axes = figure.add_subplot(grid[row, :])
         axes.set_title(title + shown)
         draw_panel(figure, axes, cloud, values, polygon, frame, colours, words, colour_map)
-        if colours is spread:
+        if colours is spread or body.values is None:
             axes.scatter(*body.places[inside].T, facecolors="none", **circle)
         else:
             colour = {"c": body.values[inside], "vmin": colours[0], "vmax": colours[1], "cmap": colour_map}
@@ -125,9 +125,9 @@ def _draw_maps(figure, grid, body: Body, index: int, look, polygon: np.ndarray, 
 
 
 def _draw_profile(axes, body: Body, index: int, look) -> None:
-    """Values down the column of points nearest to the vertical line with most data; in the middle without any."""
+    """Values down the column of points that is nearest to the vertical line with most data."""
     lines, counts = np.unique(np.round(body.places[:, 0], 6), return_counts=True)
-    line = lines[np.argmax(counts)] if len(lines) else np.median(body.points[:, 0])
+    line = lines[np.argmax(counts)]
     nearest = body.points[np.argmin(np.abs(body.points[:, 0] - line)), 0]
     column = np.flatnonzero(np.abs(body.points[:, 0] - nearest) < 1e-6)
     column = column[np.argsort(body.points[column, 1])]
@@ -137,7 +137,7 @@ def _draw_profile(axes, body: Body, index: int, look) -> None:
     for k, colour in ((0, GREY), (1, ORANGE)):
         axes.plot(body.sample[k, column], y, color=colour, lw=0.9, label=f"realisation {index + k}")
     there = np.round(body.places[:, 0], 6) == line
-    if np.any(there):
+    if body.values is not None:
         label = f"data at x = {line:g} m"
         axes.plot(body.values[there], body.places[there, 1], "o", ms=4, color=VERMILION, label=label)
     axes.set(xlabel=f"{look.field} [{look.unit}]", ylabel="y [m]", title=f"Points at x = {nearest:.4g} m")

@@ -8,7 +8,7 @@ import numpy as np
 from rfmpm.report.correlation_figure import draw_correlations
 from rfmpm.report.field_table import soil_name
 from rfmpm.report.slope_figures import WIDTH, draw_panel, panel_height, view
-from rfmpm.report.style import BLUE, DOTS_PER_INCH, STRENGTH_MAP, VERMILION, drawing, new_figure
+from rfmpm.report.style import BLUE, STRENGTH_MAP, VERMILION, drawing, new_figure, save
 
 CHART_HEIGHT = 3.3  # inches
 
@@ -42,7 +42,7 @@ def draw_field(study, index: int, look, drawn: tuple[np.ndarray, np.ndarray], so
             of = f", {soil_name(soil.part.soil)}" if len(soils) > 1 else ""
             _histogram(figure.add_subplot(grid[row, 0]), index, look, soil, of)
             draw_correlations(figure.add_subplot(grid[row, 1]), soil.statistics, of)
-        figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
+        save(figure, path)
 
 
 def _histogram(axes, index: int, look, soil, of: str) -> None:

@@ -11,7 +11,8 @@ NAMES = {
     "correlation_v": "correlation along v",
     "covariance_h": "conditional cov. along h",
     "covariance_v": "conditional cov. along v",
-    "cross_correlation": "at one point",
+    "cross_correlation": "correlation at a point",
+    "cross_covariance": "conditional cov. at a point",
 }
 VALUES = ("mean", "standard_deviation")
 SEEN = 0.1  # standard errors; what is less does not show in a table
@@ -131,8 +132,7 @@ def cross_lines(cross: Iterable, looks: Mapping) -> list[str]:
     lines = []
     for between, record in cross:
         first, second = (looks[name].field for name in between)
-        lines += [f"{first} with {second}: correlation of their standard-normal fields", _header()]
-        lines.append(_row(record, None))
+        lines += [f"{first} with {second}: their standard-normal fields", _header(), _row(record, None)]
     return lines
 
 
