@@ -28,6 +28,7 @@ class Body(NamedTuple):
     """A property of the whole body, in the unit of its field's picture.
 
     Attributes:
+        carriers: what the points are called.
         points: those that carry the field and are used, shape (n, 2) [m].
         mean: conditional mean, shape (n,).
         deviation: conditional standard deviation, shape (n,).
@@ -36,6 +37,7 @@ class Body(NamedTuple):
         values: measured, shape (d,); None where the data are of another property.
     """
 
+    carriers: str
     points: np.ndarray
     mean: np.ndarray
     deviation: np.ndarray
@@ -94,7 +96,8 @@ def _body(entry, soils: Sequence, fields: Sequence[np.ndarray], unit: float) -> 
     used = slice(None) if entry.taken is None else np.unique(entry.taken)
     mean, deviation, *sample = columns[:, used] / unit
     measured = np.concatenate(values) if values else None
-    return Body(points[used], mean, deviation, np.array(sample), np.vstack(known), measured)
+    carriers = "Points" if entry.taken is None else "Reference points"
+    return Body(carriers, points[used], mean, deviation, np.array(sample), np.vstack(known), measured)
 
 
 def _draw_maps(figure, grid, body: Body, index: int, look, polygon: np.ndarray, frame: tuple) -> None:
@@ -140,5 +143,5 @@ def _draw_profile(axes, body: Body, index: int, look) -> None:
     if body.values is not None:
         label = f"data at x = {line:g} m"
         axes.plot(body.values[there], body.places[there, 1], "o", ms=4, color=VERMILION, label=label)
-    axes.set(xlabel=f"{look.field} [{look.unit}]", ylabel="y [m]", title=f"Points at x = {nearest:.4g} m")
+    axes.set(xlabel=f"{look.field} [{look.unit}]", ylabel="y [m]", title=f"{body.carriers} at x = {nearest:.4g} m")
     axes.legend(loc="best", fontsize=7)
