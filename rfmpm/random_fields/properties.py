@@ -9,7 +9,7 @@ those of its soils, from above all layers down; the part of a soil is what its m
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import pi, radians, tan
+from math import atan, degrees, pi, radians, tan
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,10 +19,11 @@ from rfmpm.random_fields import field
 from rfmpm.random_fields.common import reference, take
 from rfmpm.random_fields.cross_correlation import mix, mixing_matrix
 from rfmpm.random_fields.layers import settings_of_soils, soil_of_points
-from rfmpm.random_fields.measurements import Measurements, measurements
+from rfmpm.random_fields.measurements import measurements
 from rfmpm.random_fields.trend import ByDepth, Scaled, Trend
 
 ANYWHERE = ("cholesky", "nufft")  # methods for which points need no lattice
+NO_POINTS = "no point lies in this soil, which its borders make too thin for these cells, or hide behind each other"
 LARGEST_ANGLE = 80.0 / 180.0 * pi  # [rad], as for an angle that is not random
 
 
@@ -31,6 +32,7 @@ class Kind(NamedTuple):
 
     mean_key: str  # of a material, and of a layer by its unit
     layer_key: str
+    in_words: Callable[[float], str]  # a value of the field in the study's unit
     field_mean: Callable[[float], float]  # mean of the field in SI units, from the study's number
     value: Callable[[np.ndarray], np.ndarray]  # the property in SI units, from the field
 
@@ -39,8 +41,16 @@ def _pascal(kilopascal: float) -> float:
     return kilopascal * 1e3
 
 
-def _tangent(degrees: float) -> float:
-    return tan(radians(degrees))
+def _in_kilopascal(pascal: float) -> str:
+    return f"{pascal / 1e3:.4g} kPa"
+
+
+def _tangent(angle: float) -> float:
+    return tan(radians(angle))
+
+
+def _in_degrees(tangent: float) -> str:
+    return f"{degrees(atan(tangent)):.4g} degrees"
 
 
 def _same(values: np.ndarray) -> np.ndarray:
@@ -53,9 +63,9 @@ def _angle(tangent: np.ndarray) -> np.ndarray:
 
 # The tangent of the angle of friction is what varies: a stress ratio, for which coefficients of variation are reported.
 KINDS = {
-    "cohesion": Kind("cohesion_kpa", "mean_kpa", _pascal, _same),
-    "residual_cohesion": Kind("residual_cohesion_kpa", "mean_kpa", _pascal, _same),
-    "friction_angle": Kind("friction_angle_deg", "mean_deg", _tangent, _angle),
+    "cohesion": Kind("cohesion_kpa", "mean_kpa", _in_kilopascal, _pascal, _same),
+    "residual_cohesion": Kind("residual_cohesion_kpa", "mean_kpa", _in_kilopascal, _pascal, _same),
+    "friction_angle": Kind("friction_angle_deg", "mean_deg", _in_degrees, _tangent, _angle),
 }
 
 
@@ -198,18 +208,22 @@ def _prepare_property(
         side /= ratio
     soil = soil_of_points(settings.layer or (), points)
     kind, parts = KINDS[name], []
-    data = measurements(settings.data or (), settings.measurement_error, kind.field_mean)
+    data = measurements(settings.data or (), settings.measurement_error, kind.field_mean, kind.in_words)
     soil_of_data = soil_of_points(settings.layer or (), data.places)
     own_mean = getattr(material, kind.mean_key)
     numbers = [own_mean, *(getattr(layer, kind.layer_key) or own_mean for layer in settings.layer or ())]
     for number, (own, mean) in enumerate(zip(settings_of_soils(settings), numbers, strict=True)):
         members = slice(None) if not settings.layer else np.flatnonzero(soil == number)
         places, value = points[members], kind.field_mean(mean)
+        path = f"layer.{number - 1}: " if number else ""
         if len(places) == 0:
-            continue
+            raise ValueError(f"{path or 'layer: '}{NO_POINTS}")
         shared = [part.field for part in before if np.array_equal(part.points, places)]
-        known = Measurements(*(column[soil_of_data == number] for column in data))
-        prepared = field.prepare(own, value, places, store, (side, side), _trend(own, site.crest), known, shared)
+        known = data.some(soil_of_data == number)
+        try:
+            prepared = field.prepare(own, value, places, store, (side, side), _trend(own, site.crest), known, shared)
+        except ValueError as error:
+            raise ValueError(f"{path}{error}") from error
         parts.append(Part(own, value, places, members, prepared))
     return Property(name, tuple(parts), len(points), taken)
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from rfmpm.kernel_tools import kernel
 from rfmpm.random_fields.correlation import Anisotropy
+from rfmpm.random_fields.correlation.protocol import in_words
 from rfmpm.random_fields.lattice import Lattice
 from rfmpm.random_fields.methods.embedding import ACCURACY, Spectrum, embed
 
@@ -73,8 +74,8 @@ class Nufft:
         if best is None or best.error > LARGEST_ERROR:
             found = "" if best is None else f"; the best has a covariance error of {float(best.error):.2g}"
             raise ValueError(
-                f"nufft: {correlation} on these {len(points)} points needs more than {most_terms} terms{found}: take "
-                "points on a lattice, larger scales of fluctuation, or up to 5000 points with method cholesky"
+                f"nufft: {in_words(correlation)} on these {len(points)} points needs more than {most_terms} terms"
+                f"{found}: take method auto, larger scales of fluctuation, or up to 5000 points with method cholesky"
             )
         return best
 
