@@ -8,6 +8,7 @@ from rfmpm.study.errors import Problem
 from rfmpm.study.field_models import FieldLayer, RandomField
 from rfmpm.study.kinds import Table
 from rfmpm.study.known import Known, path_of, problem
+from rfmpm.study.schema import shown
 from rfmpm.study.soils import layers_of
 
 # Keys that say what the values are; all others say how they vary in space, and are those of both fields.
@@ -67,15 +68,18 @@ def _correlated_values_have_one_distribution(known: Known) -> Iterator[Problem]:
         if first == second or not {first, second} <= known["random_field"].keys():
             continue
         own, other = f"random_field.{first}", f"random_field.{second}"
-        if known[f"{own}.correlation_space"] == "gaussian" and known[f"{own}.averaging"] == "point":
+        if known[f"{own}.averaging"] == "volume":
+            chosen = 'averaging = "volume"'
+        elif known[f"{own}.correlation_space"] == "physical":
+            chosen = 'correlation_space = "physical"'
+        else:
             continue
-        where = f'must be that of {own}, with which it is correlated, where correlation_space = "physical" or '
-        where += 'averaging = "volume"'
+        where = f"must be that of {own}, with which it is correlated, where {chosen}"
         for key in OF_THE_DISTRIBUTION:
             asked = known[f"{own}.{key}"] or OF_THE_DISTRIBUTION[key]
             if asked != (known[f"{other}.{key}"] or OF_THE_DISTRIBUTION[key]):
-                shown_value = "the same values" if key == "sample" else "left out" if asked is None else asked
-                yield _unequal(known, f"{other}.{key}", f"{where}: {shown_value}")
+                expected = "the same values" if key == "sample" else "left out" if asked is None else shown(asked)
+                yield _unequal(known, f"{other}.{key}", f"{where}: {expected}")
         for layer, its_own in zip(layers_of(known, other), layers_of(known, own), strict=False):
             key = "coefficient_of_variation"
             variations = [known[f"{path}.{key}"] for path in (its_own, layer)]

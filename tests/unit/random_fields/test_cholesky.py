@@ -61,7 +61,9 @@ def test_what_is_not_a_correlation_is_refused():
         def rho(self, lag_x, lag_y):
             return np.where(np.hypot(lag_x, lag_y) < 1.0, 1.0, -0.5)
 
-    with pytest.raises(ValueError, match=r"scale_of_fluctuation_v_m = 1, rotation_deg = 17\.\d+ .* not positive definite"):
+    with pytest.raises(
+        ValueError, match=r"scale_of_fluctuation_v_m = 1, rotation_deg = 17\.\d+ .* not positive definite"
+    ):
         Cholesky.prepare(Wave(), lattice(5, 5, 0.7))
 
 
