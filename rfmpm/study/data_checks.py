@@ -25,6 +25,7 @@ from rfmpm.study.soils import (
 FARTHEST_DEVIATIONS = 8.0  # from the median: the probability beyond is 1e-15
 FARTHEST_SCALES = 3.0  # of fluctuation; the Markov correlation is 0.0025 there
 LARGEST_ANGLE = 80.0  # [degrees]
+LARGEST_VARIATION_OF_DATA, LARGEST_LOGARITHM = 1e6, 700.0  # far beyond any soil, and short of overflow
 
 
 class Datum(NamedTuple):
@@ -99,9 +100,9 @@ def _range(known: Known, field: str, soil: Soil, depth: float) -> tuple[float, f
     """Between what values a field may have one at a depth, where a closed form says so [kPa or -]."""
     distribution, mean = known[f"{field}.distribution"], soil.mean_at(depth)
     if distribution == "lognormal":
-        variance = log1p(soil.variation_at(depth) ** 2)
+        variance = log1p(min(soil.variation_at(depth), LARGEST_VARIATION_OF_DATA) ** 2)
         median, reach = log(mean) - 0.5 * variance, FARTHEST_DEVIATIONS * sqrt(variance)
-        return exp(median - reach), exp(median + reach)
+        return exp(median - reach), exp(min(median + reach, LARGEST_LOGARITHM))
     if distribution in BOUNDED and known[f"{field}.upper_over_mean"] is not None:
         return mean * (known[f"{field}.lower_over_mean"] or 0.0), mean * known[f"{field}.upper_over_mean"]
     return 0.0, inf

@@ -100,9 +100,11 @@ def outline_of_points(known: Known, field: str) -> list[Place]:
     half = 0.5 * (known[f"{field}.reference_cell_m"] or known["discretisation.cell_m"])
     half /= sqrt(known["discretisation.points_per_cell"])
     outline = outline_of_body(known)
-    outline = clip(clip(outline, (-1.0, 0.0), -half), (0.0, 1.0), known["geometry.height_m"] - half)
+    (_, _), (length, _), _, (_, height) = outline
+    half = min(half, 0.5 * length, 0.5 * height)
+    outline = clip(clip(outline, (-1.0, 0.0), -half), (0.0, 1.0), height - half)
     if known["geometry.kind"] == "block":
-        return clip(clip(outline, (0.0, -1.0), -half), (1.0, 0.0), known["geometry.width_m"] - half)
+        return clip(clip(outline, (0.0, -1.0), -half), (1.0, 0.0), length - half)
     return outline
 
 
@@ -149,7 +151,7 @@ def distance(place: Place, outline: list[Place]) -> float:
         return 0.0
     found = []
     for (a, b), (c, d) in edges:
-        length = (c - a) ** 2 + (d - b) ** 2
+        length = (c - a) * (c - a) + (d - b) * (d - b)
         along = 0.0 if length == 0.0 else min(max(((x - a) * (c - a) + (y - b) * (d - b)) / length, 0.0), 1.0)
         found.append(hypot(x - a - along * (c - a), y - b - along * (d - b)))
     return min(found)
