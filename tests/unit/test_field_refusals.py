@@ -178,6 +178,17 @@ def test_soils_of_the_checks_are_those_of_the_points(study):
     assert [soils.soil_at(lines, place) for place in places] == soils_of_points.soil_of_points(given, places).tolist()
 
 
+def test_outlines_of_soils_hold_their_places_and_no_others():
+    body = [(0.0, 0.0), (15.0, 0.0), (10.0, 5.0), (0.0, 5.0)]
+    lines = [(4.0, -0.2), (1.0, 0.25)]
+    places = np.random.default_rng(3).uniform([0.0, 0.0], [10.0, 5.0], (300, 2))  # all in the body
+    for number in range(3):
+        outline = soils.outline_of_soil(body, lines, number)
+        inside = [soils.distance(place, outline) == 0.0 for place in places]
+        assert inside == [soils.soil_at(lines, place) == number for place in places]
+    assert soils.distance((12.0, 4.0), body) == pytest.approx(np.sqrt(0.5))  # of x + y = 15
+
+
 # --- what only making the fields tells
 
 
