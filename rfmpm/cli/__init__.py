@@ -222,10 +222,10 @@ def check(
 
 def _make_fields(settings: Any, source: Path) -> None:
     from rfmpm import realisation
-    from rfmpm.study import StudyError
+    from rfmpm.study import StudyError, with_fastest_methods
 
     try:
-        realisation.prepare_fields(settings)
+        realisation.prepare_fields(with_fastest_methods(settings))
     except StudyError as error:
         raise StudyError(error.problems, str(source)) from None
 

@@ -11,7 +11,9 @@ from rfmpm import realisation
 from rfmpm.cli import app
 from rfmpm.random_fields import layers as soils_of_points
 from rfmpm.random_fields import measurements, properties
-from rfmpm.study import StudyError, data_checks, fields_need_making, soils
+from rfmpm.random_fields.methods import MOST_DENSE_POINTS
+from rfmpm.study import StudyError, data_checks, fields_need_making, soils, with_fastest_methods
+from rfmpm.study.making import FEW_POINTS
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 FIELD, FRICTION, RESIDUAL = (f"random_field.{name}" for name in ("cohesion", "friction_angle", "residual_cohesion"))
@@ -223,6 +225,25 @@ def test_check_makes_the_fields_that_only_then_are_known_to_be_wrong(study, tmp_
     assert f"study.toml: {FIELD}: {said}" in outcome.stderr
     for token in ("InGaussianSpace", "theta", "rad", "e+0", "SI unit"):
         assert token not in outcome.stderr
+
+
+def test_check_takes_the_fastest_method_only_where_another_would_be_refused_alike(study):
+    dense = changed(study, {"method": "cholesky", "data": [datum()]})
+    assert with_fastest_methods(dense).random_field["cohesion"].method == "auto"
+    for keys in ({"correlation_space": "physical"}, {"rotation_deg": 10.0}, {"correlation": "markov_ellipsoidal"},
+                 {"layer": [{"top_m": 3.0, "dip_deg": 5.0}]}, {"method": "circulant"}):  # fmt: skip
+        kept = changed(dense, keys)
+        assert with_fastest_methods(kept) == kept
+
+
+def test_auto_may_be_refused_for_many_points_of_a_correlation_that_is_no_product(study):
+    turned = changed(study, {"rotation_deg": 10.0})
+    assert not fields_need_making(turned)  # 200 squares
+    fine = turned.with_changes({"discretisation.cell_m": 0.125})
+    assert fields_need_making(fine)
+    assert not fields_need_making(changed(fine, {"rotation_deg": 0.0}))
+    assert fields_need_making(changed(turned, {"reference_cell_m": 0.125}))
+    assert FEW_POINTS < MOST_DENSE_POINTS
 
 
 def test_check_makes_no_field_of_which_closed_forms_say_all(study, tmp_path, monkeypatch):
