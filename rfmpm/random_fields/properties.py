@@ -19,10 +19,11 @@ from rfmpm.random_fields.common import reference, take
 from rfmpm.random_fields.cross_correlation import mix, mixing_matrix
 from rfmpm.random_fields.kinds import KINDS
 from rfmpm.random_fields.layers import settings_of_soils, soil_of_points
-from rfmpm.random_fields.measurements import Measurements, measurements
+from rfmpm.random_fields.measurements import measurements
 from rfmpm.random_fields.trend import ByDepth, Scaled, Trend
 
 ANYWHERE = ("cholesky", "local_kriging")  # methods for which points need no lattice
+NO_POINTS = "no point lies in this soil, which its borders make too thin for these cells, or hide behind each other"
 
 
 class Site(NamedTuple):
@@ -182,18 +183,22 @@ def _prepare_property(
         side /= ratio
     soil = soil_of_points(settings.layer or (), points)
     kind, parts = KINDS[name], []
-    data = measurements(settings.data or (), settings.measurement_error, kind.field_mean)
+    data = measurements(settings.data or (), settings.measurement_error, kind.field_mean, kind.in_words)
     soil_of_data = soil_of_points(settings.layer or (), data.places)
     own_mean = getattr(material, kind.mean_key)
     numbers = [own_mean, *(getattr(layer, kind.layer_key) or own_mean for layer in settings.layer or ())]
     for number, (own, mean) in enumerate(zip(settings_of_soils(settings), numbers, strict=True)):
         members = slice(None) if not settings.layer else np.flatnonzero(soil == number)
         places, value = points[members], kind.field_mean(mean)
+        path = f"layer.{number - 1}: " if number else ""
         if len(places) == 0:
-            continue
+            raise ValueError(f"{path or 'layer: '}{NO_POINTS}")
         shared = [part.field for part in before if np.array_equal(part.points, places)]
-        known = Measurements(*(column[soil_of_data == number] for column in data))
-        prepared = field.prepare(own, value, places, store, (side, side), _trend(own, site.crest), known, shared)
+        known = data.some(soil_of_data == number)
+        try:
+            prepared = field.prepare(own, value, places, store, (side, side), _trend(own, site.crest), known, shared)
+        except ValueError as error:
+            raise ValueError(f"{path}{error}") from error
         parts.append(Part(number, own, value, places, members, prepared))
     return Property(name, tuple(parts), len(points), taken)
 

@@ -77,4 +77,6 @@ def write_field(study, index: int, directory: Path) -> list[str]:
             points = np.column_stack(prepared.scene.points.position)
             draw_field(study, index, look, (points, drawn[name] / look.per_unit), soils, path)
         lines.append(str(path))
+    if share := realisation.residual_above_peak(prepared, drawn):
+        lines.append(f"residual cohesion above the peak at {share:.1%} of the points: the law takes the peak there")
     return lines

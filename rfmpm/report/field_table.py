@@ -36,8 +36,7 @@ def property_lines(settings, entry, look, soils: Sequence, count: int) -> list[s
             *_table(entry, look, soil, count),
             *data_lines(soil, count),
         ]
-    missing = set(range(len(settings.layer or ()) + 1)) - {soil.part.soil for soil in soils}
-    return lines + [f"{look.field}{_where(entry.name, settings, number)}: no points lie there" for number in missing]
+    return lines
 
 
 def soil_name(soil: int) -> str:

@@ -95,7 +95,8 @@ def _lattice_points(known: Known, field: str) -> float:
     """Points of the reference lattice that carries a field."""
     _, length, height = _body(known)
     beyond = 0.25 * height if known["geometry.kind"] == "slope" else 0.0
-    count = (length + beyond) * height / known[f"{field}.reference_cell_m"] ** 2
+    cell = known[f"{field}.reference_cell_m"]
+    count = (length + beyond) / cell * height / cell
     per_square = 4 if known[f"{field}.reference_value"] == "point" else 1
     return count * known["discretisation.points_per_cell"] * per_square
 

@@ -25,6 +25,8 @@ METHODS: dict[str, type[FieldMethod]] = {
     "local_average_subdivision": LocalAverageSubdivision,
     "local_kriging": LocalKriging,
 }
+# Keys of a study that a method's `prepare` takes by name, where they are given.
+OPTIONS: dict[str, tuple[str, ...]] = {"karhunen_loeve": ("karhunen_loeve_variance_share",)}
 AUTO = "auto"
 FEW_POINTS = 500  # so few that the dense factor costs no more than the rest
 MOST_DENSE_POINTS = 5000  # 0.2 GB for the factor

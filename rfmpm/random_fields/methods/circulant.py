@@ -6,6 +6,7 @@ import numpy as np
 
 from rfmpm.kernel_tools import kernel
 from rfmpm.random_fields.correlation import Anisotropy
+from rfmpm.random_fields.correlation.protocol import in_words
 from rfmpm.random_fields.lattice import Lattice, require_lattice
 from rfmpm.random_fields.methods.embedding import ACCURACY, Spectrum, embed
 from rfmpm.random_fields.methods.nodes import is_index_of, node_numbers, pick
@@ -54,9 +55,9 @@ class Circulant:
         spectrum = embed(correlation, lattice, accuracy)
         if spectrum.error > LARGEST_ERROR:
             raise ValueError(
-                f"circulant: {correlation} on a lattice of {lattice.columns} x {lattice.rows} nodes needs a torus that "
-                f"is too large; the best has a covariance error of {spectrum.error:.2g}: take method auto or cholesky, "
-                "or smaller scales of fluctuation"
+                f"circulant: {in_words(correlation)} on a lattice of {lattice.columns} x {lattice.rows} nodes needs a "
+                f"torus that is too large; the best has a covariance error of {spectrum.error:.2g}: take method "
+                "cholesky, or smaller scales of fluctuation"
             )
         return on_torus(node_numbers(lattice), lattice, spectrum)
 

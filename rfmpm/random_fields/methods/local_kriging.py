@@ -12,6 +12,7 @@ import numpy as np
 
 from rfmpm.kernel_tools import kernel
 from rfmpm.random_fields.correlation import Anisotropy
+from rfmpm.random_fields.correlation.protocol import in_words
 from rfmpm.random_fields.lattice import Lattice
 from rfmpm.random_fields.methods.cholesky import factor
 from rfmpm.random_fields.methods.circulant import Circulant, CirculantRecord, on_torus
@@ -80,8 +81,8 @@ class LocalKriging:
         if best is None or best.error > LARGEST_ERROR:
             found = "" if best is None else f"; the best has a covariance error of {float(best.error):.2g}"
             raise ValueError(
-                f"local_kriging: this correlation on these {len(points)} points finds no accurate lattice{found}: take "
-                "smaller scales of fluctuation, or up to 5000 points with method cholesky"
+                f"local_kriging: {in_words(correlation)} on these {len(points)} points finds no accurate "
+                f"lattice{found}: take smaller scales of fluctuation, or up to 5000 points with method cholesky"
             )
         return best
 

@@ -82,12 +82,6 @@ def test_every_soil_has_a_table_of_its_own_under_the_path_of_its_settings(tmp_pa
         assert all(abs(ratio) < 4.0 for *_, ratio in numbers.values())  # standard errors
 
 
-def test_a_soil_without_points_says_so(tmp_path, words_only):
-    layers = [{"top_m": 2.0}, {"top_m": 2.1}]  # the second cuts the first off
-    study = make_study(**{"random_field.cohesion.layer": layers, "discretisation.cell_m": 0.5})
-    assert "cohesion, layer 0 (random_field.cohesion.layer.0): no points lie there" in write_field(study, 0, tmp_path)
-
-
 @pytest.mark.parametrize("reference", [None, 0.25])
 def test_layers_with_data_are_all_drawn_and_their_data_counted(tmp_path, monkeypatch, reference):
     drawn = []
