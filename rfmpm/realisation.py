@@ -11,6 +11,7 @@ import numpy as np
 
 from rfmpm import seeds
 from rfmpm.kernel_tools import start_threads
+from rfmpm.mpm import geometry
 from rfmpm.mpm import scene as scenes
 from rfmpm.mpm.energy import elastic_energy, energy_shares
 from rfmpm.mpm.solvers import SOLVERS
@@ -71,11 +72,26 @@ def prepare(study, store: Path | None = None) -> Prepared:
         StudyError: if a field cannot be made as asked, or its data contradict what is asked.
     """
     scene = scenes.build(study)
+    points = np.column_stack(scene.points.position)
+    return Prepared(study, scene, _properties(study, scene.body, points, store))
+
+
+def prepare_fields(study) -> random_properties.Properties:
+    """Prepare the random fields of a study alone, without the scene in which they vary.
+
+    Raises:
+        StudyError: as for `prepare`.
+    """
+    shape = geometry.body(study)
+    points, _ = geometry.fill(shape.outline, study.discretisation.cell_m, study.discretisation.points_per_cell)
+    return _properties(study, shape, points, None)
+
+
+def _properties(study, shape: geometry.Body, points: np.ndarray, store: Path | None) -> random_properties.Properties:
     try:
-        properties = random_properties.prepare(study, _site(study, scene), store)
+        return random_properties.prepare(study, _site(study, shape, points), store)
     except ValueError as error:
         raise StudyError([str(error)]) from None
-    return Prepared(study, scene, properties)
 
 
 def compile_kernels(prepared: Prepared, threads: int = 1) -> None:
@@ -117,6 +133,22 @@ def realise_fields(study, index: int, level: int = 0, xi: np.ndarray | None = No
         ValueError: if `xi` has another length than the study's fields take.
     """
     return _fields(prepare(study), index, level, xi)
+
+
+def residual_above_peak(prepared: Prepared, fields: dict[str, np.ndarray]) -> float | None:
+    """Share of points whose random residual cohesion lies above their peak, so that the laws take the peak for it.
+
+    Args:
+        prepared: the prepared study.
+        fields: of one realisation, as from `realise_fields`.
+
+    Returns:
+        the share [-]; None where the residual cohesion is not random.
+    """
+    if "residual_cohesion" not in fields:
+        return None
+    peak = fields.get("cohesion", prepared.scene.material.cohesion_kpa * 1e3)
+    return float(np.mean(fields["residual_cohesion"] > peak))
 
 
 def run(
@@ -209,12 +241,12 @@ def _fields(prepared: Prepared, index: int, level: int, xi: np.ndarray | None) -
     return random_properties.realise(prepared.properties, draw_xi(prepared, index, level) if xi is None else xi)
 
 
-def _site(study, scene: scenes.Scene) -> random_properties.Site:
+def _site(study, body: geometry.Body, points: np.ndarray) -> random_properties.Site:
     """Where the fields of a study are needed; a slope is at least four cells high, so no square reaches further."""
-    body, cell = scene.body, study.discretisation.cell_m
+    cell = study.discretisation.cell_m
     beyond = 0.25 * body.height if body.toe > body.crest_edge else 0.0
     return random_properties.Site(
-        np.column_stack(scene.points.position),
+        points,
         cell,
         cell / sqrt(study.discretisation.points_per_cell),
         body.height,

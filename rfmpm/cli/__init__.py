@@ -158,7 +158,7 @@ def check(
     schema: Annotated[bool, typer.Option("--schema", help="Print the JSON schema of study files.")] = False,
 ) -> None:
     """Validate a study: everything that is wrong with it at once."""
-    from rfmpm.study import Study, load_study
+    from rfmpm.study import Study, fields_need_making, load_study
 
     if schema:
         import json
@@ -167,8 +167,20 @@ def check(
     elif study is None:
         raise typer.BadParameter("give a study file, or --schema", param_hint="STUDY")
     if study is not None:
-        load_study(study)
+        settings = load_study(study)
+        if fields_need_making(settings):
+            _make_fields(settings, study)
         typer.echo(f"{study}: nothing is wrong", err=schema)
+
+
+def _make_fields(settings: Any, source: Path) -> None:
+    from rfmpm import realisation
+    from rfmpm.study import StudyError, with_fastest_methods
+
+    try:
+        realisation.prepare_fields(with_fastest_methods(settings))
+    except StudyError as error:
+        raise StudyError(error.problems, str(source)) from None
 
 
 @command

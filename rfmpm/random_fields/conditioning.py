@@ -136,15 +136,18 @@ def _solver(matrix: np.ndarray):
         except LinAlgError:
             continue
         return lambda right: cho_solve(factor, right, check_finite=False)
-    raise ValueError(f"the correlation is not positive definite on {len(matrix)} places, even with a nugget of 1e-10")
+    raise ValueError(
+        f"data: the correlation is not positive definite on {len(matrix)} places of data and points around; "
+        "give the data a measurement_error, or take fewer of them, or a rougher correlation"
+    )
 
 
 def _check_misfit(misfit: float) -> None:
     if misfit > LARGEST_MISFIT:
         raise ValueError(
-            f"the data are on average {misfit:.3g} standard deviations from what mean, variation and correlation "
-            "allow: exact values that differ much over a small distance need a measurement_error, a shorter scale of "
-            "fluctuation or a nugget"
+            f"data: they are on average {misfit:.3g} standard deviations from what mean, variation and correlation "
+            f"allow, at most {LARGEST_MISFIT:g}: exact values that differ much over a small distance need a "
+            "measurement_error, a shorter scale of fluctuation or a nugget"
         )
 
 

@@ -3,7 +3,7 @@
 What the settings mean for the distribution and the correlation of the values is composed in `law`.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import sqrt
 from pathlib import Path
@@ -17,7 +17,7 @@ from rfmpm.random_fields.gaussian_space import InGaussianSpace
 from rfmpm.random_fields.law import Box, Law, choose, law_of
 from rfmpm.random_fields.marginals import Marginal
 from rfmpm.random_fields.measurements import Measurements, distinct, standard_normal_data
-from rfmpm.random_fields.methods import AUTO, METHODS
+from rfmpm.random_fields.methods import AUTO, METHODS, OPTIONS
 from rfmpm.random_fields.methods import choose as fastest_method
 from rfmpm.random_fields.store import find_or_prepare
 from rfmpm.random_fields.trend import Trend
@@ -37,6 +37,7 @@ class PreparedField:
         correlation: of the standard-normal field, its nugget included.
         marginal: distribution of the values.
         method: name in `METHODS`; where a study says auto, the method that was chosen.
+        options: what the method was given beside correlation and points, by name.
         record: what the method prepared for the correlated part of the standard-normal field.
         nugget: share of the variance of the standard-normal field that differs from point to point [-].
         count: number of points.
@@ -48,6 +49,7 @@ class PreparedField:
     correlation: Correlation
     marginal: Marginal
     method: str
+    options: Mapping[str, float]
     record: Any
     nugget: float
     count: int
@@ -103,8 +105,16 @@ def prepare(
     law = law_of(settings, box)
     has_data = data is not None and len(data.values) > 0
     marginal = _marginal(law, mean, settings, trend, points)
-    method, record = _record(law, settings, points, store, shared)
-    fixed = law.correlation, marginal, method, record, law.nugget, len(points), law.variance_factor
+    method = _method(law, settings, points)
+    fixed = (
+        law.correlation,
+        marginal,
+        *method,
+        _record(law, *method, points, store, shared),
+        law.nugget,
+        len(points),
+        law.variance_factor,
+    )
     if not has_data:
         return PreparedField(*fixed)
     data = distinct(data)
@@ -145,19 +155,30 @@ def _marginal(law: Law, mean: float, settings: Any, trend: Trend | None, places:
     return law.marginal(*moments) if trend is None else trend.marginal(law.marginal, *moments, places)
 
 
-def _record(
-    law: Law, settings: Any, points: np.ndarray, store: Path | None, shared: Iterable[PreparedField]
-) -> tuple[str, Any]:
-    """Name of the method and what it prepared, or what it prepared for a field of equal correlation."""
+def _method(law: Law, settings: Any, points: np.ndarray) -> tuple[str, dict[str, float]]:
+    """Name of the method, and what the settings give it beside correlation and points."""
     name = fastest_method(law.correlated, points) if settings.method == AUTO else settings.method
-    method = choose(METHODS, name, "method")
+    choose(METHODS, name, "method")
+    given = {key: getattr(settings, key, None) for key in OPTIONS.get(name, ())}
+    return name, {key: value for key, value in given.items() if value is not None}
+
+
+def _record(
+    law: Law,
+    name: str,
+    options: Mapping[str, float],
+    points: np.ndarray,
+    store: Path | None,
+    shared: Iterable[PreparedField],
+) -> Any:
+    """What the method prepared, or what it prepared for a field of equal correlation."""
     for other in shared:
-        if (other.correlation, other.method) == (law.correlation, name):
-            return name, other.record
+        if (other.correlation, other.method, other.options) == (law.correlation, name, options):
+            return other.record
     try:
         if store is None:
-            return name, method.prepare(law.correlated, points)
-        return name, find_or_prepare(name, law.correlated, points, store)
+            return METHODS[name].prepare(law.correlated, points, **options)
+        return find_or_prepare(name, law.correlated, points, options, store)
     except ValueError as error:
         if isinstance(law.correlated, InGaussianSpace):
             raise ValueError(f"{error}: {NO_SUCH_FIELD}") from error

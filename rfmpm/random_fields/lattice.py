@@ -66,7 +66,8 @@ def require_lattice(points: np.ndarray, method: str) -> Lattice:
     lattice = find_lattice(points)
     if lattice is None:
         raise ValueError(
-            f"{method}: these {len(points)} points are not on a uniform lattice; take method auto, cholesky or nufft"
+            f"{method}: these {len(points)} points are not on a uniform lattice; take method auto, cholesky or "
+            "local_kriging"
         )
     return lattice
 

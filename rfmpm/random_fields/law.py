@@ -74,7 +74,7 @@ def law_of(settings: Any, box: Box | None = None) -> Law:
     family = choose(MARGINALS, settings.distribution, "distribution")
     own = {name: _setting(settings, name, DEFAULTS.get(name)) for name in family.needs}
     if missing := [name for name, value in own.items() if value is None]:
-        raise ValueError(f"{missing[0]}: missing; distribution = {settings.distribution!r} needs it")
+        raise ValueError(f'{missing[0]}: missing; distribution = "{settings.distribution}" needs it')
     law = Law(base, _setting(settings, "nugget", 0.0), partial(family.from_moments, **own))
     WithNugget(base, law.nugget)  # refuses a share out of range
     # Correlations do not depend on the mean: the families are families of scale.
@@ -91,7 +91,7 @@ def law_of(settings: Any, box: Box | None = None) -> Law:
 def choose(table: Mapping[str, Entry], name: str, key: str) -> Entry:
     """The entry of a table by its name; ValueError with the choices where it has none."""
     if name not in table:
-        raise ValueError(f"{key} = {name!r}: must be one of {', '.join(table)}")
+        raise ValueError(f'{key} = "{name}": must be one of {", ".join(table)}')
     return table[name]
 
 
@@ -101,7 +101,7 @@ def _base_correlation(settings: Any) -> Anisotropy:
     if settings.correlation == "matern":
         own["nu"] = _setting(settings, "matern_nu")
         if own["nu"] is None:
-            raise ValueError("matern_nu: missing; correlation = 'matern' needs it")
+            raise ValueError('matern_nu: missing; correlation = "matern" needs it')
     return kernel(
         theta_h=settings.scale_of_fluctuation_h_m,
         theta_v=settings.scale_of_fluctuation_v_m,
@@ -112,9 +112,9 @@ def _base_correlation(settings: Any) -> Anisotropy:
 
 def _averaged(law: Law, point: Marginal, coefficient_of_variation: float, is_physical: bool, box: Box | None) -> Law:
     if box is None:
-        raise ValueError("averaging = 'volume': needs the size of the points' boxes")
+        raise ValueError('averaging = "volume": needs the size of the boxes of the points')
     if law.nugget:
-        raise ValueError("nugget: must be 0 where averaging = 'volume': what is uncorrelated averages out")
+        raise ValueError('nugget: must be 0 where averaging = "volume": what is uncorrelated averages out')
     physical = law.correlated if is_physical else InPhysicalSpace(law.correlated, space_map(point))
     average = VolumeAveraged(physical, *box)
     reduced = Law(average, 0.0, law.point_marginal, average.variance_factor)

@@ -1,6 +1,6 @@
 """Measured values of a variable at places, and what they are in the standard-normal space below its distribution."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from math import sqrt
 from typing import Any, NamedTuple
 
@@ -21,11 +21,20 @@ class Measurements(NamedTuple):
         values: shape (d,), in the unit of the field.
         errors: coefficient of variation of the error of measurement, shape (d,) [-]; 0 for an exact value. The ratio
             of measured to true value is lognormal with median 1.
+        labels: what an error calls each of them, array of text of shape (d,).
+        in_words: a value of the field in the study's unit, with the unit.
     """
 
     places: np.ndarray
     values: np.ndarray
     errors: np.ndarray
+    labels: np.ndarray
+    in_words: Callable[[float], str]
+
+    def some(self, which: Any) -> "Measurements":
+        """Those that an index array picks."""
+        columns = {name: getattr(self, name)[which] for name in ("places", "values", "errors", "labels")}
+        return self._replace(**columns)
 
 
 class StandardNormalData(NamedTuple):
@@ -37,7 +46,10 @@ class StandardNormalData(NamedTuple):
 
 
 def measurements(
-    data: Iterable[Any], measurement_error: float | None, to_field: Callable[[float], float]
+    data: Sequence[Any],
+    measurement_error: float | None,
+    to_field: Callable[[float], float],
+    in_words: Callable[[float], str],
 ) -> Measurements:
     """The data of a study in the unit of the field.
 
@@ -45,6 +57,7 @@ def measurements(
         data: entries with x_m, y_m, value, and measurement_error (None: the common one).
         measurement_error: the common coefficient of variation of the error [-]; None: exact.
         to_field: the number of the field that a value of the study stands for.
+        in_words: a value of the field in the study's unit, with the unit.
     """
     common = measurement_error or 0.0
     table = np.array(
@@ -54,7 +67,9 @@ def measurements(
         ],
         dtype=float,
     ).reshape(-1, 4)
-    return Measurements(table[:, :2].copy(), table[:, 2].copy(), table[:, 3].copy())
+    labels = [f"data.{k} (x_m = {d.x_m:g}, y_m = {d.y_m:g}, value = {d.value:g})" for k, d in enumerate(data)]
+    columns = table[:, :2].copy(), table[:, 2].copy(), table[:, 3].copy()
+    return Measurements(*columns, np.array(labels, dtype=object), in_words)
 
 
 def to_standard_normal(marginal: Marginal, values: np.ndarray) -> np.ndarray:
@@ -84,15 +99,15 @@ def standard_normal_data(marginal: Marginal, data: Measurements) -> StandardNorm
     variable exactly, otherwise to first order in the error.
 
     Raises:
-        ValueError: a value outside the range of the distribution; it names the datum by its position, from 0.
+        ValueError: a value outside the range of the distribution; it names the datum.
     """
     z = to_standard_normal(marginal, data.values)
     if np.any(np.isnan(z)):
         k = int(np.flatnonzero(np.isnan(z))[0])
         low, high = (marginal.transform(np.full(len(z), end))[k] for end in (-FARTHEST, FARTHEST))
         raise ValueError(
-            f"data.{k}: the value {data.values[k]:.6g} at {_place(data, k)} lies outside what the distribution allows, "
-            f"{low:.4g} to {high:.4g}, in SI units (probability 1e-15 beyond); are the unit and the field's mean right?"
+            f"{data.labels[k]} lies outside what the distribution allows, {data.in_words(low)} to "
+            f"{data.in_words(high)} there (probability 1e-15 beyond); are the unit and the mean right?"
         )
     step = 1e-4
     upper, lower = marginal.transform(z + step), marginal.transform(z - step)
@@ -106,7 +121,7 @@ def distinct(data: Measurements) -> Measurements:
     """Keep exact measurements that say the same at the same place once, at the front; those with errors all stay.
 
     Raises:
-        ValueError: two exact values that differ at one place; it names them by their position, from 0.
+        ValueError: two exact values that differ at one place; it names them.
     """
     kept: list[int] = []
     for k in np.flatnonzero(data.errors == 0.0):
@@ -117,15 +132,11 @@ def distinct(data: Measurements) -> Measurements:
         other = kept[int(np.argmin(distance))]
         if abs(data.values[k] - data.values[other]) > SAME_VALUE * abs(data.values[other]):
             raise ValueError(
-                f"data.{other} and data.{k} contradict each other: {data.values[other]:.6g} and {data.values[k]:.6g}, "
-                f"both exact, at {_place(data, k)}; give them a measurement_error, or keep one"
+                f"{data.labels[other]} and {data.labels[k]} contradict each other, both exact; give them a "
+                "measurement_error, or keep one"
             )
     kept += map(int, np.flatnonzero(data.errors > 0.0))
-    return Measurements(*(column[kept] for column in data))
-
-
-def _place(data: Measurements, k: int) -> str:
-    return f"x = {data.places[k, 0]:g} m, y = {data.places[k, 1]:g} m"
+    return data.some(kept)
 
 
 def conditional_moments(marginal: Marginal, mean: np.ndarray, deviation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -7,9 +7,8 @@ The vector `xi` of a realisation holds the parts of the properties in the order 
 those of its soils, from above all layers down; the part of a soil is what its method takes.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import pi, radians, tan
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -18,45 +17,13 @@ import numpy as np
 from rfmpm.random_fields import field
 from rfmpm.random_fields.common import reference, take
 from rfmpm.random_fields.cross_correlation import mix, mixing_matrix
+from rfmpm.random_fields.kinds import KINDS
 from rfmpm.random_fields.layers import settings_of_soils, soil_of_points
-from rfmpm.random_fields.measurements import Measurements, measurements
+from rfmpm.random_fields.measurements import measurements
 from rfmpm.random_fields.trend import ByDepth, Scaled, Trend
 
-ANYWHERE = ("cholesky", "nufft")  # methods for which points need no lattice
-LARGEST_ANGLE = 80.0 / 180.0 * pi  # [rad], as for an angle that is not random
-
-
-class Kind(NamedTuple):
-    """What is random of a property, and where a study says its mean."""
-
-    mean_key: str  # of a material, and of a layer by its unit
-    layer_key: str
-    field_mean: Callable[[float], float]  # mean of the field in SI units, from the study's number
-    value: Callable[[np.ndarray], np.ndarray]  # the property in SI units, from the field
-
-
-def _pascal(kilopascal: float) -> float:
-    return kilopascal * 1e3
-
-
-def _tangent(degrees: float) -> float:
-    return tan(radians(degrees))
-
-
-def _same(values: np.ndarray) -> np.ndarray:
-    return values
-
-
-def _angle(tangent: np.ndarray) -> np.ndarray:
-    return np.minimum(np.arctan(tangent), LARGEST_ANGLE)
-
-
-# The tangent of the angle of friction is what varies: a stress ratio, for which coefficients of variation are reported.
-KINDS = {
-    "cohesion": Kind("cohesion_kpa", "mean_kpa", _pascal, _same),
-    "residual_cohesion": Kind("residual_cohesion_kpa", "mean_kpa", _pascal, _same),
-    "friction_angle": Kind("friction_angle_deg", "mean_deg", _tangent, _angle),
-}
+ANYWHERE = ("cholesky", "local_kriging")  # methods for which points need no lattice
+NO_POINTS = "no point lies in this soil, which its borders make too thin for these cells, or hide behind each other"
 
 
 class Site(NamedTuple):
@@ -78,6 +45,7 @@ class Site(NamedTuple):
 class Part:
     """The field of one soil: its settings, the mean at the crest [unit of the field] and the points that carry it."""
 
+    soil: int  # 0 above all layers, k in the k-th of the list
     settings: Any
     mean: float
     points: np.ndarray  # (m, 2) [m]
@@ -170,6 +138,23 @@ def realise(properties: Properties, xi: np.ndarray) -> dict[str, np.ndarray]:
     Raises:
         ValueError: `xi` has another shape.
     """
+    fields = standard_normal(properties, xi)
+    return {name: _values(properties.entries[name], z) for name, z in fields.items()}
+
+
+def standard_normal(properties: Properties, xi: np.ndarray) -> dict[str, np.ndarray]:
+    """One realisation of the standard-normal fields below the distributions, mixed where properties are correlated.
+
+    Args:
+        properties: as for `realise`.
+        xi: as for `realise`.
+
+    Returns:
+        fields by name at the points that carry them, shape (count of the property,) each [-].
+
+    Raises:
+        ValueError: `xi` has another shape.
+    """
     xi = np.asarray(xi, dtype=float)
     if xi.shape != (properties.n_variables,):
         raise ValueError(f"xi of shape {xi.shape}: must be ({properties.n_variables},), as this study's fields take")
@@ -177,7 +162,7 @@ def realise(properties: Properties, xi: np.ndarray) -> dict[str, np.ndarray]:
     fields = [_standard_normal(entry, part) for entry, part in zip(entries, _split(xi, entries), strict=True)]
     if properties.mixing is not None:
         fields = mix(properties.mixing, fields)
-    return {entry.name: _values(entry, z) for entry, z in zip(entries, fields, strict=True)}
+    return dict(zip(properties.entries, fields, strict=True))
 
 
 def means(properties: Properties, count: int) -> dict[str, np.ndarray]:
@@ -198,19 +183,23 @@ def _prepare_property(
         side /= ratio
     soil = soil_of_points(settings.layer or (), points)
     kind, parts = KINDS[name], []
-    data = measurements(settings.data or (), settings.measurement_error, kind.field_mean)
+    data = measurements(settings.data or (), settings.measurement_error, kind.field_mean, kind.in_words)
     soil_of_data = soil_of_points(settings.layer or (), data.places)
     own_mean = getattr(material, kind.mean_key)
     numbers = [own_mean, *(getattr(layer, kind.layer_key) or own_mean for layer in settings.layer or ())]
     for number, (own, mean) in enumerate(zip(settings_of_soils(settings), numbers, strict=True)):
         members = slice(None) if not settings.layer else np.flatnonzero(soil == number)
         places, value = points[members], kind.field_mean(mean)
+        path = f"layer.{number - 1}: " if number else ""
         if len(places) == 0:
-            continue
+            raise ValueError(f"{path or 'layer: '}{NO_POINTS}")
         shared = [part.field for part in before if np.array_equal(part.points, places)]
-        known = Measurements(*(column[soil_of_data == number] for column in data))
-        prepared = field.prepare(own, value, places, store, (side, side), _trend(own, site.crest), known, shared)
-        parts.append(Part(own, value, places, members, prepared))
+        known = data.some(soil_of_data == number)
+        try:
+            prepared = field.prepare(own, value, places, store, (side, side), _trend(own, site.crest), known, shared)
+        except ValueError as error:
+            raise ValueError(f"{path}{error}") from error
+        parts.append(Part(number, own, value, places, members, prepared))
     return Property(name, tuple(parts), len(points), taken)
 
 

@@ -1,14 +1,16 @@
 """Sample statistics of a field over realisations, beside the asked ones."""
 
-from collections.abc import Iterable, Iterator
-from math import cos, sin, sqrt
+from collections.abc import Iterable, Iterator, Sequence
+from math import cos, nan, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from rfmpm.random_fields.conditioning import conditional_covariance
+from rfmpm.random_fields.conditioning import Conditioning, conditional_covariance
 from rfmpm.random_fields.correlation.protocol import Correlation
 from rfmpm.random_fields.field import PreparedField, realise_standard_normal
+from rfmpm.random_fields.gaussian_space import space_map
+from rfmpm.random_fields.marginals import Marginal
 from rfmpm.random_fields.measurements import conditional_moments
 
 MOST_PAIRS = 400
@@ -19,7 +21,7 @@ class Statistic(NamedTuple):
 
     `name` is mean, standard_deviation (of the strength), correlation_h or correlation_v (of the standard-normal field,
     or with data covariance_h and covariance_v, of its departure from the conditional mean); `lag` [m] is zero for the
-    first two.
+    first two. `asked` is NaN where it is not known exactly.
     """
 
     name: str
@@ -37,6 +39,36 @@ class PointPairs(NamedTuple):
     first: np.ndarray
     second: np.ndarray
     asked: float
+
+
+class Share(NamedTuple):
+    """Share of a standard-normal field that is a mixture of independent ones of one correlation.
+
+    Attributes:
+        weight: what the independent field is multiplied by [-]; the squares of the weights add up to one.
+        conditioning: what makes that field agree with data; None without any.
+    """
+
+    weight: float
+    conditioning: Conditioning | None
+
+
+class Asked(NamedTuple):
+    """What is asked of a field, to be compared with its realisations.
+
+    Attributes:
+        marginal: distribution of the values.
+        pairs: of points.
+        centre: mean of the standard-normal field, shape (n,), or zero without data [-].
+        means: of the values, shape (n,), or one number without data [unit of the field].
+        deviation: standard deviation of the values, root of its mean square over the points [the same].
+    """
+
+    marginal: Marginal
+    pairs: tuple[PointPairs, ...]
+    centre: np.ndarray | float
+    means: np.ndarray | float
+    deviation: float
 
 
 def statistics(
@@ -62,39 +94,104 @@ def statistics(
     Raises:
         ValueError: fewer than two realisations.
     """
+    asked = ask(prepared, settings, mean, points, [Share(1.0, prepared.conditioning)])
+    return compare(asked, [averages(asked, realise_standard_normal(prepared, xi)) for xi in xis])
+
+
+def ask(prepared: PreparedField, settings: Any, mean: float, points: np.ndarray, shares: Sequence[Share]) -> Asked:
+    """What is asked of a field.
+
+    Args:
+        prepared, settings, mean, points: as for `statistics`.
+        shares: of the standard-normal field.
+    """
     points = np.asarray(points, dtype=float)
-    pairs = list(point_pairs(prepared.correlation, points))
-    centre, means, deviation = 0.0, mean, mean * settings.coefficient_of_variation * sqrt(prepared.variance_factor)
-    if conditioning := prepared.conditioning:
-        pairs = [_conditional(pair, prepared, points) for pair in pairs]
-        centre = conditioning.mean
-        means, deviations = conditional_moments(prepared.marginal, centre, conditioning.deviation)
-        deviation = float(np.sqrt(np.mean(deviations**2)))
-    samples = []
-    for xi in xis:
-        z = realise_standard_normal(prepared, xi)
-        strength = prepared.marginal.transform(z)
-        z = z - centre
-        products = [np.mean(z[pair.first] * z[pair.second]) for pair in pairs]
-        samples.append([np.mean(strength), np.mean((strength - means) ** 2), *products])
-    if len(samples) < 2:
-        raise ValueError(f"{len(samples)} realisations: statistics need two or more")
-    found = np.mean(samples, axis=0)
-    error = np.std(samples, axis=0, ddof=1) / np.sqrt(len(samples))
-    root = np.sqrt(found[1])
+    pairs = tuple(point_pairs(prepared.correlation, points))
+    deviation = mean * settings.coefficient_of_variation * sqrt(prepared.variance_factor)
+    if not is_conditional(shares):
+        return Asked(prepared.marginal, pairs, 0.0, mean, deviation)
+    pairs = tuple(_conditional(pair, prepared.correlation, points, shares) for pair in pairs)
+    centre, spread = conditional_normal(shares)
+    means, deviations = conditional_moments(prepared.marginal, centre, spread)
+    return Asked(prepared.marginal, pairs, centre, means, float(np.sqrt(np.mean(deviations**2))))
+
+
+def is_conditional(shares: Iterable[Share]) -> bool:
+    """Whether data have a say in a field."""
+    return any(share.conditioning is not None for share in shares)
+
+
+def conditional_normal(shares: Sequence[Share]) -> tuple[np.ndarray, np.ndarray]:
+    """Mean and standard deviation of a standard-normal field with data in a share of it, shape (n,) each [-]."""
+    known = [share for share in shares if share.conditioning is not None]
+    free = 1.0 - sum(share.weight**2 for share in known)
+    variance = sum(share.weight**2 * share.conditioning.deviation**2 for share in known) + free
+    return sum(share.weight * share.conditioning.mean for share in known), np.sqrt(variance)
+
+
+def averages(asked: Asked, z: np.ndarray) -> np.ndarray:
+    """What one realisation of the standard-normal field, shape (n,), gives: averages over points and pairs of them."""
+    values = asked.marginal.transform(z)
+    z = z - asked.centre
+    products = [np.mean(z[pair.first] * z[pair.second]) for pair in asked.pairs]
+    return np.array([np.mean(values), np.mean((values - asked.means) ** 2), *products])
+
+
+def compare(asked: Asked, samples: Sequence[np.ndarray]) -> list[Statistic]:
+    """Statistics from the averages of two or more realisations; as `statistics` returns and raises."""
+    means, deviations, *products = found_means(samples)
     return [
-        Statistic("mean", 0.0, float(np.mean(means)), float(found[0]), float(error[0])),
-        Statistic("standard_deviation", 0.0, deviation, float(root), float(error[1] / (2.0 * root))),
-        *(
-            Statistic(pair.name, pair.lag, pair.asked, float(found[k]), float(error[k]))
-            for k, pair in enumerate(pairs, start=2)
-        ),
+        Statistic("mean", 0.0, float(np.mean(asked.means)), *means),
+        standard_deviation(asked.deviation, *deviations),
+        *(Statistic(pair.name, pair.lag, pair.asked, *own) for pair, own in zip(asked.pairs, products, strict=True)),
     ]
 
 
-def _conditional(pair: PointPairs, prepared: PreparedField, points: np.ndarray) -> PointPairs:
-    asked = conditional_covariance(prepared.correlation, prepared.conditioning, points, pair.first, pair.second)
-    return pair._replace(name=pair.name.replace("correlation", "covariance"), asked=float(np.mean(asked)))
+def found_means(samples: Sequence[np.ndarray]) -> list[tuple[float, float]]:
+    """Mean over independent realisations and its standard error, for each of the numbers that a realisation gives."""
+    if len(samples) < 2:
+        raise ValueError(f"{len(samples)} realisations: statistics need two or more")
+    errors = np.std(samples, axis=0, ddof=1) / np.sqrt(len(samples))
+    return list(zip(np.mean(samples, axis=0).tolist(), errors.tolist(), strict=True))
+
+
+def standard_deviation(asked: float, variance: float, error: float) -> Statistic:
+    """The statistic of a standard deviation from the variance found and the standard error of that."""
+    root = sqrt(variance)
+    return Statistic("standard_deviation", 0.0, asked, root, error / (2.0 * root) if root > 0.0 else nan)
+
+
+def variance_of_mean(prepared: PreparedField, points: np.ndarray) -> float:
+    """Variance of the arithmetic mean over a block of a lattice, over the variance of one of its values.
+
+    It is the mean of the correlation of the values over all pairs of points of the block. In a block of c columns and
+    r rows the lag of i columns and j rows occurs (c - |i|) (r - |j|) times.
+
+    Args:
+        prepared: a field with one distribution everywhere and no data.
+        points: of the block, shape (c r, 2) [m].
+
+    Returns:
+        share of the variance that is left [-].
+    """
+    axes = [np.unique(np.round(points[:, axis], 9)) for axis in (0, 1)]
+    lags = [np.concatenate([axis - axis[-1], axis[1:] - axis[0]]) for axis in axes]
+    times = [len(axis) - np.abs(np.arange(1 - len(axis), len(axis))) for axis in axes]
+    lag_x, lag_y = np.meshgrid(*lags)
+    lag_x[np.abs(lag_x) < 1e-9], lag_y[np.abs(lag_y) < 1e-9] = 0.0, 0.0  # the nugget knows lag zero from others
+    correlation = space_map(prepared.marginal).to_physical(prepared.correlation.rho(lag_x, lag_y))
+    return float(times[1] @ correlation @ times[0]) / len(points) ** 2
+
+
+def _conditional(pair: PointPairs, correlation: Correlation, points: np.ndarray, shares: Sequence[Share]) -> PointPairs:
+    asked = sum(
+        share.weight**2 * conditional_covariance(correlation, share.conditioning, points, pair.first, pair.second)
+        for share in shares
+        if share.conditioning is not None
+    )
+    free = sum(share.weight**2 for share in shares if share.conditioning is None)
+    name = pair.name.replace("correlation", "covariance")
+    return pair._replace(name=name, asked=float(np.mean(asked)) + free * pair.asked)
 
 
 def point_pairs(correlation: Correlation, points: np.ndarray, lags: int = 8) -> Iterator[PointPairs]:
@@ -108,12 +205,14 @@ def point_pairs(correlation: Correlation, points: np.ndarray, lags: int = 8) -> 
         "correlation_h": (correlation.theta_h, np.array([cosine, sine])),
         "correlation_v": (correlation.theta_v, np.array([-sine, cosine])),
     }
+    from scipy.spatial import cKDTree  # late: commands that make no field do not pay for it
+
     base = np.unique(np.linspace(0, len(points) - 1, MOST_PAIRS).astype(int))
-    spacing = _spacing(points, base)
+    spacing, nearest = _spacing(points, base), cKDTree(points)
     for name, (theta, direction) in directions.items():
         for k in range(1, lags + 1):
             lag = 0.25 * k * theta
-            partner, miss = _nearest(points, points[base] + lag * direction)
+            miss, partner = nearest.query(points[base] + (1.0 - 1e-9) * lag * direction)  # of two as near: the closer
             kept = (miss <= 0.75 * spacing) & (partner != base)
             if np.any(kept):
                 first, second = base[kept], partner[kept]
@@ -122,13 +221,9 @@ def point_pairs(correlation: Correlation, points: np.ndarray, lags: int = 8) -> 
                 yield PointPairs(name, lag, first, second, float(asked))
 
 
-def _nearest(points: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    # Index of the point nearest to each place, and how far it is.
-    distances = [np.hypot(*(points - place).T) for place in places]
-    return np.array([np.argmin(row) for row in distances]), np.array([np.min(row) for row in distances])
-
-
 def _spacing(points: np.ndarray, base: np.ndarray) -> float:
     # Median distance from a point to the nearest one elsewhere.
-    distances = [np.hypot(*(points - points[index]).T) for index in base]
-    return float(np.median([np.min(row[row > 0], initial=np.inf) for row in distances]))
+    from scipy.spatial import cKDTree
+
+    places = np.unique(points, axis=0)
+    return float(np.median(cKDTree(places).query(points[base], [2])[0]))  # the nearest place of all is the point's own

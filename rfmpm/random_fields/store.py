@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,9 @@ from rfmpm.random_fields.correlation.protocol import Correlation
 from rfmpm.random_fields.methods import METHODS
 
 
-def find_or_prepare(method: str, correlation: Correlation, points: np.ndarray, folder: Path) -> Any:
+def find_or_prepare(
+    method: str, correlation: Correlation, points: np.ndarray, options: Mapping[str, float], folder: Path
+) -> Any:
     """Read the record of a method from the folder, or prepare it and keep it there.
 
     The arrays of the record are mapped from their files, so processes on one machine share the memory. A damaged or
@@ -23,6 +26,7 @@ def find_or_prepare(method: str, correlation: Correlation, points: np.ndarray, f
         method: name in `METHODS`.
         correlation: correlation of the standard-normal field.
         points: positions, shape (n, 2) [m].
+        options: what else its `prepare` takes, by name.
         folder: where the files are; made if missing.
 
     Returns:
@@ -33,22 +37,22 @@ def find_or_prepare(method: str, correlation: Correlation, points: np.ndarray, f
     """
     chosen = METHODS[method]
     folder = Path(folder)
-    stem = f"{method}-{_fingerprint(method, correlation, points)}"
+    stem = f"{method}-{_fingerprint(method, correlation, points, options)}"
     files = {field: folder / f"{stem}.{field}.npy" for field in chosen.Record._fields}
     record = _read(chosen.Record, files)
     if record is not None and chosen.is_intact(record, points):
         return record
     folder.mkdir(parents=True, exist_ok=True)
-    fresh = chosen.prepare(correlation, points)
+    fresh = chosen.prepare(correlation, points, **options)
     for field, path in files.items():
         _write(path, getattr(fresh, field))
     return _read(chosen.Record, files) or fresh
 
 
-def _fingerprint(method: str, correlation: Correlation, points: np.ndarray) -> str:
+def _fingerprint(method: str, correlation: Correlation, points: np.ndarray, options: Mapping[str, float]) -> str:
     # Everything the bits of a record depend on, but the processor: records are best shared within one kind of machine.
     versions = [version(package) for package in ("rfmpm", "numpy", "scipy")]
-    described = repr((method, correlation, points.shape, points.dtype.str, versions))
+    described = repr((method, dict(options), correlation, points.shape, points.dtype.str, versions))
     return hashlib.sha256(described.encode() + points.tobytes()).hexdigest()[:32]
 
 

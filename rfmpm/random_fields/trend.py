@@ -96,4 +96,6 @@ class ByDepth:
 def _check_positive(what: str, values: np.ndarray, depth: np.ndarray) -> None:
     if not np.all(values > 0.0):
         worst = int(np.argmin(values))
-        raise ValueError(f"the {what} is {values[worst]:.4g} at a depth of {depth[worst]:.4g} m: must be positive")
+        raise ValueError(
+            f"the {what} is {values[worst] / 1e3:.4g} kPa at a depth of {depth[worst]:.4g} m: must be positive"
+        )

@@ -11,6 +11,7 @@ BLUE, ORANGE, VERMILION, GREY = "#0072B2", "#E69F00", "#D55E00", "#595959"
 STRAIN_MAP, STRENGTH_MAP = "viridis", "cividis"
 CHART = (5.4, 3.5)  # inches; about the width of a column of the page
 DOTS_PER_INCH = 130
+LAYOUT_PASSES = 2  # before the one of the writing itself
 COLOURS = 256  # in a figure of the page; thousands of smooth-edged points would otherwise make it three times as large
 
 SETTINGS = {
@@ -61,6 +62,13 @@ def new_figure(width: float, height: float):
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
+
+
+def save(figure, path) -> None:
+    """Write a figure of panels of equal aspect; their layout takes several passes to settle, else a title is cut."""
+    for _ in range(LAYOUT_PASSES):
+        figure.get_layout_engine().execute(figure)
+    figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
 
 
 def encode(figure) -> str:

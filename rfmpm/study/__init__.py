@@ -3,6 +3,7 @@
 from rfmpm.study.errors import StudyError
 from rfmpm.study.field_models import RandomField
 from rfmpm.study.load import load_study
+from rfmpm.study.making import fields_need_making, with_fastest_methods
 from rfmpm.study.models import (
     BlockGeometry,
     ElasticMaterial,
@@ -20,5 +21,7 @@ __all__ = [
     "Study",
     "StudyError",
     "VonMisesMaterial",
+    "fields_need_making",
     "load_study",
+    "with_fastest_methods",
 ]

@@ -5,16 +5,16 @@ from collections.abc import Callable, Iterator
 from math import sqrt
 
 from rfmpm.study.correlation_checks import CORRELATION_CHECKS
-from rfmpm.study.data_file import contradictions
+from rfmpm.study.data_checks import DATA_CHECKS
 from rfmpm.study.distribution_checks import DISTRIBUTION_CHECKS
 from rfmpm.study.errors import Problem
 from rfmpm.study.field_checks import FIELD_CHECKS
 from rfmpm.study.known import Known, Unknown, problem
+from rfmpm.study.layer_checks import LAYER_CHECKS
 from rfmpm.study.material_checks import MATERIAL_CHECKS
 from rfmpm.study.size_checks import SIZE_CHECKS
 
 LARGEST_CELL_OVER_LENGTH = 1.0  # of a softening length; the transfer itself averages over 0.7 cells
-HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION = 0.99  # towards 1 a truncated normal becomes exponential
 
 
 def joint_problems(known: Known) -> list[Problem]:
@@ -92,32 +92,6 @@ def _names_are_unique(known: Known) -> Iterator[Problem]:
             yield problem(known, f"material.{last}.name", f"is the name of {count} materials; names must differ")
 
 
-def _truncated_normal_can_spread_so(known: Known) -> Iterator[Problem]:
-    for variable in known["random_field"]:
-        key = f"random_field.{variable}.coefficient_of_variation"
-        highest = HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION
-        if known[f"random_field.{variable}.distribution"] == "normal_truncated" and known[key] >= highest:
-            yield problem(known, key, f"must be less than {highest:g} for normal_truncated; lognormal allows more")
-
-
-def _data_agree(known: Known) -> Iterator[Problem]:
-    for variable in known["random_field"]:
-        key = f"random_field.{variable}"
-        if known[f"{key}.data_file"] is not None:
-            text = "is read where a study is loaded: use load_study, or give its content as data"
-            yield problem(known, f"{key}.data_file", text)
-        count = len(known[f"{key}.data"] or ())
-        common = known[f"{key}.measurement_error"]
-        data = []
-        for index in range(count):
-            x, y, value, own = (
-                known[f"{key}.data.{index}.{name}"] for name in ("x_m", "y_m", "value", "measurement_error")
-            )
-            data.append((x, y, value, (common if own is None else own) or 0.0))
-        for first, second, text in contradictions(data, [f"data.{index}" for index in range(count)]):
-            yield problem(known, f"{key}.{first}", f"and {second} {text}")
-
-
 CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     *SIZE_CHECKS,
     _residual_is_below_the_peak,
@@ -125,10 +99,10 @@ CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _softening_has_one_length,
     _there_is_one_material,
     _names_are_unique,
-    _truncated_normal_can_spread_so,
-    _data_agree,
+    *DATA_CHECKS,
     *DISTRIBUTION_CHECKS,
     *MATERIAL_CHECKS,
     *FIELD_CHECKS,
+    *LAYER_CHECKS,
     *CORRELATION_CHECKS,
 ]

@@ -8,6 +8,8 @@ from rfmpm.study.errors import Problem
 from rfmpm.study.field_models import FieldLayer, RandomField
 from rfmpm.study.kinds import Table
 from rfmpm.study.known import Known, path_of, problem
+from rfmpm.study.schema import shown
+from rfmpm.study.soils import layers_of
 
 # Keys that say what the values are; all others say how they vary in space, and are those of both fields.
 OF_THE_VALUES = {
@@ -17,6 +19,13 @@ OF_THE_VALUES = {
     *("data", "data_file", "measurement_error"),
 }
 OF_THE_VALUES_IN_A_LAYER = {"mean_kpa", "mean_deg", "coefficient_of_variation"}
+OF_THE_DISTRIBUTION = {  # with what it is where left out
+    "distribution": None,
+    "coefficient_of_variation": None,
+    "lower_over_mean": 0.0,
+    "upper_over_mean": None,
+    "sample": None,
+}
 SMALLEST_PIVOT = 1e-12  # of the matrix of the coefficients; below it a field would be no more than the others
 
 
@@ -51,6 +60,34 @@ def _correlated_fields_vary_alike(known: Known) -> Iterator[Problem]:
         if _borders(known, own) != _borders(known, other):
             text = f"must have the borders, scales and rotations of {own}, with which it is correlated"
             yield _unequal(known, f"{other}.layer", text)
+
+
+def _correlated_values_have_one_distribution(known: Known) -> Iterator[Problem]:
+    """Fields whose correlation is that of the values share one standard-normal field's only if distributed alike."""
+    for _, first, second in _pairs(known):
+        if first == second or not {first, second} <= known["random_field"].keys():
+            continue
+        own, other = f"random_field.{first}", f"random_field.{second}"
+        if known[f"{own}.averaging"] == "volume":
+            chosen = 'averaging = "volume"'
+        elif known[f"{own}.correlation_space"] == "physical":
+            chosen = 'correlation_space = "physical"'
+        else:
+            continue
+        where = f"must be that of {own}, with which it is correlated, where {chosen}"
+        for key in OF_THE_DISTRIBUTION:
+            asked = known[f"{own}.{key}"] or OF_THE_DISTRIBUTION[key]
+            if asked != (known[f"{other}.{key}"] or OF_THE_DISTRIBUTION[key]):
+                expected = "the same values" if key == "sample" else "left out" if asked is None else shown(asked)
+                yield _unequal(known, f"{other}.{key}", f"{where}: {expected}")
+        for layer, its_own in zip(layers_of(known, other), layers_of(known, own), strict=False):
+            key = "coefficient_of_variation"
+            variations = [known[f"{path}.{key}"] for path in (its_own, layer)]
+            asked, found = (
+                value or known[f"{field}.{key}"] for value, field in zip(variations, (own, other), strict=True)
+            )
+            if asked != found and variations != [None, None]:
+                yield _unequal(known, f"{layer}.{key}", f"{where}: {asked:g}")
 
 
 def _the_first_of_them_has_the_data(known: Known) -> Iterator[Problem]:
@@ -99,6 +136,7 @@ def _coefficients_allow_each_other(known: Known) -> Iterator[Problem]:
 CORRELATION_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _correlated_fields_exist_once,
     _correlated_fields_vary_alike,
+    _correlated_values_have_one_distribution,
     _the_first_of_them_has_the_data,
     _coefficients_allow_each_other,
 ]

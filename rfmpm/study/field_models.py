@@ -98,8 +98,11 @@ class RandomField(Table):
         "circulant",
         "karhunen_loeve",
         "local_average_subdivision",
-        "nufft",
+        "local_kriging",
     ] = Field("auto", description="How the field is generated; auto: the fastest that is exact or errs by 5e-4 at most")
+    karhunen_loeve_variance_share: Number | None = Field(
+        None, gt=0, lt=1, description="Share of the variance that the modes of karhunen_loeve hold [1]. Default: 0.95"
+    )
     averaging: Literal["point", "volume"] = Field(
         "point", description="What a value stands for: the field at the point, or its average over the point's volume"
     )

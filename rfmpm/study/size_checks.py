@@ -13,6 +13,7 @@ LARGEST_STEP_COUNT = 1_000_000_000
 HIGHEST_SELF_COMPRESSION = 0.5  # of the lowest soil under the weight above, by small-strain elasticity
 GRAVITY = 9.81  # [m/s2]
 LARGEST_CHOLESKY_COUNT = 20_000
+BYTES_PER_LATTICE_POINT = 150  # found at 2 million: position, members, spectrum and random vector of an embedding
 SMALLEST_CELLS = {("slope", "height_m"): 4, ("slope", "crest_m"): 2, ("block", "width_m"): 2, ("block", "height_m"): 1}
 WIDEST_SPLINE_CELLS = 3  # cells that the four nodes of a cubic B-spline span
 
@@ -66,6 +67,9 @@ def _points_are_affordable(known: Known) -> Iterator[Problem]:
     for variable in known["random_field"]:
         method, reference = f"random_field.{variable}.method", known[f"random_field.{variable}.reference_cell_m"]
         carriers = count if reference is None else _lattice_points(known, f"random_field.{variable}")
+        if carriers > LARGEST_POINT_COUNT:
+            yield problem(known, f"random_field.{variable}.reference_cell_m", _too_fine(cell, reference, carriers))
+            continue
         if known[method] == "cholesky" and carriers > LARGEST_CHOLESKY_COUNT:
             what, key = ("material", "discretisation.cell_m") if reference is None else ("lattice", "reference_cell_m")
             text = (
@@ -77,11 +81,22 @@ def _points_are_affordable(known: Known) -> Iterator[Problem]:
             yield problem(known, method, text)
 
 
+def _too_fine(cell: float, reference: float, count: float) -> str:
+    """What a reference lattice of so many points takes, and the finest one of cells that fit in those of the study."""
+    parts = floor(cell / reference * sqrt(LARGEST_POINT_COUNT / count) + 1e-9)
+    remedy = f"take {cell / parts:.10g} or more" if parts else "leave it out"
+    return (
+        f"gives {_rounded(count)} points of a lattice around the body, at most {LARGEST_POINT_COUNT:,}, and the field "
+        f"would need about {count * BYTES_PER_LATTICE_POINT / 1e9:,.3g} GB: {remedy}"
+    )
+
+
 def _lattice_points(known: Known, field: str) -> float:
     """Points of the reference lattice that carries a field."""
     _, length, height = _body(known)
     beyond = 0.25 * height if known["geometry.kind"] == "slope" else 0.0
-    count = (length + beyond) * height / known[f"{field}.reference_cell_m"] ** 2
+    cell = known[f"{field}.reference_cell_m"]
+    count = (length + beyond) / cell * height / cell
     per_square = 4 if known[f"{field}.reference_value"] == "point" else 1
     return count * known["discretisation.points_per_cell"] * per_square
 

@@ -12,12 +12,15 @@ import pytest
 from rfmpm.random_fields.correlation import CORRELATIONS
 from rfmpm.random_fields.methods import METHODS, choose, covariance_error
 from rfmpm.random_fields.methods.circulant import Circulant
-from rfmpm.random_fields.methods.nufft import Nufft
 
 every_method = pytest.mark.parametrize("method", METHODS)
 ROUNDING = 1e-10  # identity up to rounding and the largest nugget that a method may add
 DEFAULT = 5e-4  # what the circulant embedding asks of itself
-STATED = {"karhunen_loeve": 0.5, "local_average_subdivision": 0.1, "nufft": 0.02}  # theirs, on these points, at most
+STATED = {
+    "karhunen_loeve": 0.5,
+    "local_average_subdivision": 0.1,
+    "local_kriging": 0.02,
+}  # theirs, on these points, at most
 MOST_VARIABLES = 3000  # of which the linear map is formed, for time's sake
 LINEAR = [name for name in METHODS if name != "local_average_subdivision"]  # its window is a step in two variables
 
@@ -56,10 +59,9 @@ def asked_covariance(correlation, points: np.ndarray) -> np.ndarray:
 
 @cache
 def prepared(method: str, kernel: str, kind: str, scales: tuple):
-    """The record, or the reason of a refusal; a Fourier series of few terms, for time's sake."""
-    options = {"most_terms": 2**15} if method == "nufft" else {}
+    """The record, or the reason of a refusal."""
     try:
-        return METHODS[method].prepare(CORRELATIONS[kernel](*scales), points_of(kind), **options)
+        return METHODS[method].prepare(CORRELATIONS[kernel](*scales), points_of(kind))
     except ValueError as refusal:
         return str(refusal)
 
@@ -73,7 +75,6 @@ def is_offered(method: str, kernel: str, kind: str, scales: tuple) -> bool:
         "ar1": on_lattice and aligned and kernel == "markov_separable",
         "circulant": on_lattice,
         "local_average_subdivision": on_lattice,
-        "nufft": kernel == "gaussian",  # a cusp on few points near each other may need a longer series than it takes
     }.get(method, True)
 
 
@@ -91,7 +92,7 @@ def draw(count: int, n_variables: int) -> np.ndarray:
 
 
 def allowed(method: str, record) -> float:
-    """Covariance error that the method states, with rounding; nufft's is taken between fewer lags."""
+    """Covariance error that the method states, with rounding."""
     return 1.1 * covariance_error(method, record) + ROUNDING
 
 
@@ -148,12 +149,6 @@ def test_the_circulant_embedding_is_exact_where_it_is_asked_to_be(kernel):
     np.testing.assert_allclose(factor @ factor.T, asked_covariance(correlation, points), rtol=0, atol=1e-10)
 
 
-def test_a_longer_series_is_more_accurate():
-    correlation, points = CORRELATIONS["markov_ellipsoidal"](1.0, 0.5), points_of("scattered")
-    short, long = (Nufft.prepare(correlation, points, most_terms=2**k).error for k in (16, 18))
-    assert long < 0.6 * short  # the error is of first order in the spacing, which halves
-
-
 @every_method
 def test_what_is_not_a_correlation_is_refused(method):
     class Wave:
@@ -178,7 +173,7 @@ def test_what_is_not_a_correlation_is_refused(method):
 @every_method
 def test_mean_variance_and_repeatability(method):
     points = points_of("part")
-    kernel = "gaussian" if method == "nufft" else "markov_separable"
+    kernel = "markov_separable"
     chosen, record = METHODS[method], prepared(method, kernel, "part", SCALES[0])
     count = 1500
     xis = draw(count, chosen.n_variables(record))
@@ -195,7 +190,7 @@ def test_mean_variance_and_repeatability(method):
 
 @pytest.mark.parametrize("method", LINEAR)
 def test_the_transform_is_linear(method):
-    record = prepared(method, "gaussian" if method == "nufft" else "markov_separable", "part", SCALES[0])
+    record = prepared(method, "markov_separable", "part", SCALES[0])
     a, b = draw(2, METHODS[method].n_variables(record))
     transform = METHODS[method].transform
     apart = 2.0 * transform(record, a) - 3.0 * transform(record, b)
@@ -204,7 +199,7 @@ def test_the_transform_is_linear(method):
 
 @every_method
 def test_a_fresh_record_is_intact_and_one_for_other_points_is_not(method):
-    record = prepared(method, "gaussian" if method == "nufft" else "markov_separable", "part", SCALES[0])
+    record = prepared(method, "markov_separable", "part", SCALES[0])
     assert METHODS[method].is_intact(record, points_of("part"))
     assert not METHODS[method].is_intact(record, points_of("part")[:-1])
     broken = record._replace(**{record._fields[0]: np.zeros((3, 3, 3))})

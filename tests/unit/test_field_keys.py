@@ -63,8 +63,12 @@ FIELD = {
             'must be one of "mean", "point"',
         ),
         ({f"{COHESION}.reference_cell_m": 0.05}, "lattice points need a dense factor"),
-        (layer(top_m=5.0), "must be greater than 0 and less than 5, to cross the body"),
-        (layer(top_m=-1.0), "to cross the body"),
+        (
+            {f"{COHESION}.reference_cell_m": 0.0025},
+            "gives 52,000,000 points of a lattice around the body, at most 5,00",
+        ),
+        (layer(top_m=4.94), "must be greater than 0 and at most 4.938, to have points above and below"),
+        (layer(top_m=-1.0), "to have points above and below"),
         (layer(top_m=INF), "must be a finite number"),
         (layer(dip_deg=80.0), "must be greater than -80 and less than 80"),
         (layer(mean_kpa=0.0), "must be greater than 0"),
@@ -203,3 +207,14 @@ def test_a_study_with_all_of_them_survives_its_text(drained):
     study = drained.with_changes(changes)
     assert rfmpm.load_study(study.to_toml()) == study
     assert study.physics_hash != drained.physics_hash
+
+
+@pytest.mark.parametrize("value", ["mean", "point"])
+def test_the_reference_cell_that_a_refusal_names_is_allowed_and_the_next_smaller_one_is_not(undrained, value):
+    method = {f"{COHESION}.method": "auto", f"{COHESION}.reference_value": value}
+    (problem,) = problems_of(undrained, method | {f"{COHESION}.reference_cell_m": 0.0025})
+    named = float(problem.rsplit("take ")[-1].split()[0])
+    undrained.with_changes(method | {f"{COHESION}.reference_cell_m": named})
+    smaller = 0.25 / (round(0.25 / named) + 1)
+    (problem,) = problems_of(undrained, method | {f"{COHESION}.reference_cell_m": smaller})
+    assert "points of a lattice around the body" in problem

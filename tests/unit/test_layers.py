@@ -17,7 +17,7 @@ FLOORS = {
     5: ("realisation", "results"),
     4.5: ("observer",),
     4: ("quantities", "estimators", "stability"),
-    3.5: ("random_fields.properties",),
+    3.5: ("random_fields.properties", "random_fields.comparison"),
     3: ("mpm.scene", "mpm.solvers", "random_fields.field", "random_fields.statistics"),
     2.5: (
         *("mpm.geometry", "mpm.energy", "mpm.initial_stress"),
@@ -29,7 +29,7 @@ FLOORS = {
         *("random_fields.methods", "random_fields.correlation", "random_fields.marginals"),
         *("random_fields.conditioning", "random_fields.measurements"),
         *("random_fields.sounding", "random_fields.estimation", "random_fields.variance_function"),
-        *("random_fields.layers", "random_fields.common"),
+        *("random_fields.layers", "random_fields.common", "random_fields.kinds"),
         "random_fields.cross_correlation",
     ),
     1: ("mpm.state", "mpm.protocols", "random_fields.lattice", "study", "variables", "seeds"),

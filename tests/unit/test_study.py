@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 import rfmpm
 from rfmpm.random_fields.marginals import HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION
-from rfmpm.study import Study, StudyError, checks, load_study
+from rfmpm.study import Study, StudyError, distribution_checks, load_study
 from rfmpm.study.study import NOT_PHYSICS
 
 CONFIGS = Path(__file__).parents[2] / "configs"
@@ -487,12 +487,15 @@ def test_field_needs_a_material_with_a_cohesion(study):
 
 
 def test_truncated_normal_is_not_asked_for_more_spread_than_it_has(study):
-    assert checks.HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION == HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION
+    assert distribution_checks.HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION == HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION
     changes = {"random_field.cohesion.distribution": "normal_truncated"}
     spread = "random_field.cohesion.coefficient_of_variation"
     study.with_changes({**changes, spread: 0.98})
     (problem,) = problems_of(study, {**changes, spread: 0.99})
     assert problem.startswith(f"{spread} = 0.99: must be less than 0.99 for normal_truncated")
+    layer = [{"top_m": 2.0, "coefficient_of_variation": 1.0}]
+    (problem,) = problems_of(study, {**changes, "random_field.cohesion.layer": layer})
+    assert problem.startswith("random_field.cohesion.layer.0.coefficient_of_variation = 1.0: must be less than 0.99")
 
 
 def test_there_is_exactly_one_material_and_names_differ(tables):

@@ -108,8 +108,11 @@ def test_realisations_pass_through_the_data_on_points():
         np.testing.assert_allclose(cohesion[[0, 30, 77]], [20e3, 23e3, 27.7e3], rtol=1e-9)
 
 
-def test_data_that_the_distribution_does_not_allow_are_refused_by_the_field():
+def test_data_that_only_the_field_can_tell_to_be_impossible_are_refused_in_the_units_of_the_study():
     study = load_study(RANDOM).with_changes({"discretisation.cell_m": 1.0, "material.0.softening_length_m": 1.0})
-    wrong = study.with_changes({f"{KEY}.data": [{"x_m": 1.0, "y_m": 1.0, "value": 5000.0}]})
-    with pytest.raises(StudyError, match=rf"{KEY}: data\.0: the value 5e\+06"):
+    below = [{"x_m": 9.0, "y_m": 4.0, "value": 20.0}, {"x_m": 1.0, "y_m": 1.0, "value": 5000.0}]
+    layer = [{"top_m": 2.0, "mean_kpa": 30.0}]
+    wrong = study.with_changes({f"{KEY}.data": below, f"{KEY}.layer": layer, f"{KEY}.distribution": "gamma"})
+    said = rf"{KEY}: layer\.0: data\.1 \(x_m = 1, y_m = 1, value = 5000\) lies outside .* to 1\d\d\.\d kPa there"
+    with pytest.raises(StudyError, match=said):
         realisation.prepare(wrong)

@@ -63,7 +63,6 @@ class Case:
 
 DEFAULT, EXACT = ("circulant", {}), ("circulant", {"accuracy": 1e-10})
 LAS = ("local_average_subdivision", {}), ("local_average_subdivision", {"is_stretched": False})
-SERIES = tuple(("nufft", {"most_terms": 2**k}) for k in (20, 22))
 CASES = (
     Case(
         "ellipsoidal, 4 800 points", "markov_ellipsoidal", 120, 40,
@@ -80,7 +79,8 @@ CASES = (
         data_count=50,
     ),
     Case(
-        "scattered, 19 000 points", "markov_ellipsoidal", 190, 100, SERIES, {"gstools": 400.0}, is_scattered=True
+        "scattered, 19 000 points", "markov_ellipsoidal", 190, 100, (("local_kriging", {}),), {"gstools": 400.0},
+        is_scattered=True,
     ),
 )  # fmt: skip
 QUICK_CASES = (

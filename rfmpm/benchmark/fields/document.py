@@ -4,9 +4,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from rfmpm.benchmark.fields.cases import CASES, QUICK_CASES, Case
+from rfmpm.benchmark.fields.labels import place_names
 from rfmpm.benchmark.fields.measure import Measurement, measure
 from rfmpm.benchmark.fields.peers import PEERS, installed
 
+SMALLEST_SHOWN = 1e-13  # errors of rounding alone are drawn there
 HEAD = """# Random fields: run time against error
 
 `rfmpm benchmark fields` wrote this. Scales of fluctuation 6 m and 0.5 m, points 0.125 m apart. Times are CPU
@@ -88,28 +90,26 @@ def draw(everything: list[tuple[Case, list[Measurement]]], path: Path) -> None:
     """Draw covariance error against CPU time, a panel per case, and write the figure."""
     from rfmpm.report.style import BLUE, DOTS_PER_INCH, GREY, VERMILION, drawing, new_figure
 
+    rows = (len(everything) + 1) // 2
     with drawing():
-        figure = new_figure(11.0, 3.4 * ((len(everything) + 1) // 2))
-        panels = figure.subplots((len(everything) + 1) // 2, 2, squeeze=False).ravel()
+        figure = new_figure(11.0, 3.4 * rows)
+        panels = figure.subplots(rows, 2, squeeze=False).ravel()
+        labelled = []
         for axes, (case, measured) in zip(panels, everything, strict=False):
-            for one in measured:
-                if one.error != one.error:
-                    continue
-                is_peer = one.name in PEERS
-                axes.plot(
-                    one.total, max(one.error, 1e-13), marker="s" if is_peer else "o", linestyle="",
-                    color=VERMILION if is_peer else BLUE,
-                )  # fmt: skip
-                # Ours above, to the right; those of peers, often as good as each other, below them at a slant.
-                place = {"xytext": (0, -7), "rotation": -35, "va": "top"} if is_peer else {"xytext": (5, 4)}
-                axes.annotate(
-                    one.name.replace("local_average_subdivision", "LAS"), (one.total, max(one.error, 1e-13)),
-                    textcoords="offset points", fontsize=7.5, color=GREY, **place,
-                )  # fmt: skip
+            shown = [one for one in measured if one.error == one.error]
+            places = [(one.total, max(one.error, SMALLEST_SHOWN)) for one in shown]
+            for one, place in zip(shown, places, strict=True):
+                marker, colour = ("s", VERMILION) if one.name in PEERS else ("o", BLUE)
+                axes.plot(*place, marker=marker, linestyle="", color=colour)
             axes.set(xscale="log", yscale="log", title=case.name, xlabel="CPU time of one realisation [ms]")
             axes.set_ylabel("largest covariance error")
-            axes.set_ylim(1e-14, 1.0)
+            axes.set_ylim(1e-14, 10.0)
             axes.margins(x=0.35)
+            labelled.append((axes, places, [one.name.replace("local_average_subdivision", "LAS") for one in shown]))
         for axes in panels[len(everything) :]:
             axes.set_axis_off()
+        figure.set_dpi(DOTS_PER_INCH)
+        figure.draw_without_rendering()  # settles the layout: names have their final extents only then
+        for axes, places, names in labelled:
+            place_names(axes, places, names, fontsize=7.5, color=GREY)
         figure.savefig(path, dpi=DOTS_PER_INCH)

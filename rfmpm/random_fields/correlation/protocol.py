@@ -1,5 +1,6 @@
 """What a correlation offers to methods and to what is built on it."""
 
+from math import degrees
 from typing import Protocol
 
 import numpy as np
@@ -22,3 +23,10 @@ class Correlation(Protocol):
 
     def rho(self, lag_x: np.ndarray, lag_y: np.ndarray) -> np.ndarray:
         """Correlation [-] at lags of any shape [m], same shape."""
+
+
+def in_words(correlation: Correlation) -> str:
+    """A correlation by the keys of a study that set its lengths and its direction, for a message."""
+    lengths = f"scale_of_fluctuation_h_m = {correlation.theta_h:g}, scale_of_fluctuation_v_m = {correlation.theta_v:g}"
+    turned = f", rotation_deg = {degrees(correlation.rotation):g}" if correlation.rotation else ""
+    return f"the correlation with {lengths}{turned}"

@@ -13,7 +13,7 @@ from rfmpm.random_fields.methods.embedding import is_accurate
 from rfmpm.random_fields.methods.karhunen_loeve import KarhunenLoeve
 from rfmpm.random_fields.methods.kronecker import Kronecker, is_product
 from rfmpm.random_fields.methods.local_average_subdivision import LocalAverageSubdivision
-from rfmpm.random_fields.methods.nufft import Nufft
+from rfmpm.random_fields.methods.local_kriging import LocalKriging
 from rfmpm.random_fields.methods.protocol import FieldMethod
 
 METHODS: dict[str, type[FieldMethod]] = {
@@ -23,8 +23,10 @@ METHODS: dict[str, type[FieldMethod]] = {
     "circulant": Circulant,
     "karhunen_loeve": KarhunenLoeve,
     "local_average_subdivision": LocalAverageSubdivision,
-    "nufft": Nufft,
+    "local_kriging": LocalKriging,
 }
+# Keys of a study that a method's `prepare` takes by name, where they are given.
+OPTIONS: dict[str, tuple[str, ...]] = {"karhunen_loeve": ("karhunen_loeve_variance_share",)}
 AUTO = "auto"
 FEW_POINTS = 500  # so few that the dense factor costs no more than the rest
 MOST_DENSE_POINTS = 5000  # 0.2 GB for the factor
@@ -41,7 +43,7 @@ def choose(correlation: Anisotropy, points: np.ndarray) -> str:
     Returns:
         a name in `METHODS`: the recursions or the factors of the axes for a separable correlation on a lattice, the
         dense factor for few points, the circulant embedding on a lattice where it is accurate, the dense factor for
-        some more points, the factors of the axes again, and a Fourier series for many scattered points.
+        some more points, the factors of the axes again, and kriging from a lattice for many scattered points.
     """
     lattice = find_lattice(points)
     if lattice is not None and is_markov(correlation, lattice):
@@ -58,7 +60,7 @@ def choose(correlation: Anisotropy, points: np.ndarray) -> str:
         return "cholesky"
     if factors:
         return "kronecker"
-    return "nufft" if lattice is None else "circulant"
+    return "local_kriging" if lattice is None else "circulant"
 
 
 def covariance_error(method: str, record: Any) -> float:

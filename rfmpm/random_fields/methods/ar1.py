@@ -7,6 +7,7 @@ import numpy as np
 
 from rfmpm.kernel_tools import kernel
 from rfmpm.random_fields.correlation import Anisotropy
+from rfmpm.random_fields.correlation.protocol import in_words
 from rfmpm.random_fields.lattice import Lattice, require_lattice
 from rfmpm.random_fields.methods.nodes import is_aligned, is_index_of, node_numbers, pick
 
@@ -49,7 +50,9 @@ class Ar1:
         """
         lattice = require_lattice(points, "ar1")
         if not is_markov(correlation, lattice):
-            raise ValueError(f"ar1: {correlation} is not an unrotated separable Markov correlation; take method auto")
+            raise ValueError(
+                f"ar1: {in_words(correlation)} is not an unrotated separable Markov correlation; take method auto"
+            )
         lags = np.array([[0.0, lattice.dy], [lattice.dx, 0.0]])
         ratios = correlation.rho(lags[:, 0], lags[:, 1])
         weights = np.array([[a, sqrt(-np.expm1(2.0 * np.log(a))) if a > 0.0 else 1.0] for a in ratios])

@@ -7,6 +7,7 @@ import numpy as np
 
 from rfmpm.kernel_tools.threads import single_blas_thread
 from rfmpm.random_fields.correlation import Anisotropy
+from rfmpm.random_fields.correlation.protocol import in_words
 
 # Added to the unit diagonal, in this order, until the factor exists. Rounding leaves eigenvalues of about -1e-13 in
 # the matrix of a smooth correlation or of coincident points; one that needs more than the last is not a covariance.
@@ -45,7 +46,7 @@ class Cholesky:
         try:
             lower, nugget = factor(lambda: _lower_covariance(correlation, points))
         except ValueError as error:
-            raise ValueError(f"cholesky: {correlation} on these {len(points)} points: {error}") from error
+            raise ValueError(f"cholesky: {in_words(correlation)} on these {len(points)} points: {error}") from error
         return CholeskyRecord(lower, np.array(nugget))
 
     @staticmethod

@@ -6,8 +6,9 @@ import numpy as np
 
 from rfmpm.kernel_tools import kernel
 from rfmpm.random_fields.correlation import Anisotropy
-from rfmpm.random_fields.lattice import require_lattice
-from rfmpm.random_fields.methods.embedding import ACCURACY, embed
+from rfmpm.random_fields.correlation.protocol import in_words
+from rfmpm.random_fields.lattice import Lattice, require_lattice
+from rfmpm.random_fields.methods.embedding import ACCURACY, Spectrum, embed
 from rfmpm.random_fields.methods.nodes import is_index_of, node_numbers, pick
 
 LARGEST_ERROR = 0.02  # a field with more is refused
@@ -54,16 +55,11 @@ class Circulant:
         spectrum = embed(correlation, lattice, accuracy)
         if spectrum.error > LARGEST_ERROR:
             raise ValueError(
-                f"circulant: {correlation} on a lattice of {lattice.columns} x {lattice.rows} nodes needs a torus that "
-                f"is too large; the best has a covariance error of {spectrum.error:.2g}: take method auto or cholesky, "
-                "or smaller scales of fluctuation"
+                f"circulant: {in_words(correlation)} on a lattice of {lattice.columns} x {lattice.rows} nodes needs a "
+                f"torus that is too large; the best has a covariance error of {spectrum.error:.2g}: take method "
+                "cholesky, or smaller scales of fluctuation"
             )
-        amplitudes = np.sqrt(spectrum.eigenvalues)
-        amplitudes[:, 1:-1] *= np.sqrt(0.5)
-        shape = np.array([lattice.rows, lattice.columns])
-        return CirculantRecord(
-            node_numbers(lattice), shape, amplitudes, np.array(spectrum.clipped), np.array(spectrum.error)
-        )
+        return on_torus(node_numbers(lattice), lattice, spectrum)
 
     @staticmethod
     def n_variables(record: CirculantRecord) -> int:
@@ -102,6 +98,14 @@ class Circulant:
     def covariance_error(record: CirculantRecord) -> float:
         """Largest difference from the asked covariance over all lags of the lattice [-]."""
         return float(record.error)
+
+
+def on_torus(index: np.ndarray, lattice: Lattice, spectrum: Spectrum) -> CirculantRecord:
+    """The record of an embedding for the nodes `index` of the lattice, all of them where it is empty."""
+    amplitudes = np.sqrt(spectrum.eigenvalues)
+    amplitudes[:, 1:-1] *= np.sqrt(0.5)
+    shape = np.array([lattice.rows, lattice.columns])
+    return CirculantRecord(index, shape, amplitudes, np.array(spectrum.clipped), np.array(spectrum.error))
 
 
 @kernel

@@ -9,7 +9,8 @@ from rfmpm.random_fields.correlation import Anisotropy
 from rfmpm.random_fields.lattice import find_lattice
 from rfmpm.random_fields.methods.kronecker import axis_correlations, is_product
 
-VARIANCE_SHARE = 0.95
+KEY = "karhunen_loeve_variance_share"
+DEFAULT_SHARE = 0.95
 LEAST_SHARE_OF_A_POINT = 0.5  # of its variance: with less, more modes are kept than asked
 MOST_POINTS = 5000  # without a lattice and a separable correlation: the eigenvectors of a dense matrix
 MOST_MODES = 20_000
@@ -48,14 +49,15 @@ class KarhunenLoeve:
 
     @staticmethod
     def prepare(
-        correlation: Anisotropy, points: np.ndarray, variance_share: float = VARIANCE_SHARE
+        correlation: Anisotropy, points: np.ndarray, karhunen_loeve_variance_share: float = DEFAULT_SHARE
     ) -> KarhunenLoeveRecord:
         """Find the fewest modes that hold a share of the variance, and at least half of it at every point.
 
         Args:
             correlation: correlation of the standard-normal field.
             points: positions, shape (n, 2) [m].
-            variance_share: mean share of the variance that the modes hold before scaling, above 0, at most 1 [-].
+            karhunen_loeve_variance_share: mean share of the variance that the modes hold before scaling, above 0, at
+                most 1 [-].
 
         Returns:
             the record; it takes one variable per mode.
@@ -63,8 +65,9 @@ class KarhunenLoeve:
         Raises:
             ValueError: the share is out of range, or there are too many points or modes.
         """
-        if not 0.0 < variance_share <= 1.0:
-            raise ValueError(f"variance_share = {variance_share}: must be above 0 and at most 1")
+        share = karhunen_loeve_variance_share
+        if not 0.0 < share <= 1.0:
+            raise ValueError(f"{KEY} = {share:g}: must be above 0 and at most 1")
         lattice = find_lattice(points) if is_product(correlation) else None
         if lattice is not None:
             (values_y, modes_y), (values_x, modes_x) = (
@@ -80,7 +83,7 @@ class KarhunenLoeve:
                 f"karhunen_loeve: {len(points)} points, at most {MOST_POINTS} unless they are on a lattice and the "
                 "correlation is separable along x and y; take method auto"
             )
-        share, variance = variance_share, np.zeros(1)
+        variance = np.zeros(1)
         while variance.min() < LEAST_SHARE_OF_A_POINT:
             pairs, kept, lost = _largest(values_y, values_x, share)
             used_y, used_x = pairs.max(axis=0) + 1
@@ -147,7 +150,7 @@ def _largest(values_y: np.ndarray, values_x: np.ndarray, share: float) -> tuple[
     if count > MOST_MODES:
         raise ValueError(
             f"karhunen_loeve: {count} modes hold {share:g} of the variance, at most {MOST_MODES}; take method auto, or "
-            "a smaller variance_share"
+            f"a smaller {KEY}"
         )
     pairs = np.column_stack(np.divmod(order[:count], len(values_x)))
     return pairs, values[order[:count]], max(0.0, float(1.0 - held[count - 1]))

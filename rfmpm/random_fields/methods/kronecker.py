@@ -6,6 +6,7 @@ import numpy as np
 
 from rfmpm.kernel_tools.threads import single_blas_thread
 from rfmpm.random_fields.correlation import Anisotropy
+from rfmpm.random_fields.correlation.protocol import in_words
 from rfmpm.random_fields.lattice import Lattice, require_lattice
 from rfmpm.random_fields.methods.cholesky import factor
 from rfmpm.random_fields.methods.nodes import is_aligned, is_index_of, node_numbers, pick
@@ -46,7 +47,7 @@ class Kronecker:
         """
         lattice = require_lattice(points, "kronecker")
         if not is_product(correlation):
-            raise ValueError(f"kronecker: {correlation} is not separable along x and y; take method auto")
+            raise ValueError(f"kronecker: {in_words(correlation)} is not separable along x and y; take method auto")
         (lower_y, nugget_y), (lower_x, nugget_x) = (
             factor(along.copy) for along in axis_correlations(correlation, lattice)
         )

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rfmpm.random_fields.correlation import Anisotropy
+from rfmpm.random_fields.correlation.protocol import in_words
 from rfmpm.random_fields.lattice import Lattice, require_lattice
 from rfmpm.random_fields.methods.cholesky import factor
 from rfmpm.random_fields.methods.nodes import is_index_of
@@ -144,7 +145,7 @@ def _record(correlation: Anisotropy, lattice: Lattice, stretch: np.ndarray) -> L
     try:
         lower, _ = factor(first_covariance.copy)
     except ValueError as error:
-        raise ValueError(f"local_average_subdivision: {correlation}, first stage: {error}") from error
+        raise ValueError(f"local_average_subdivision: {in_words(correlation)}, first stage: {error}") from error
     nothing = np.zeros(2), np.array(0.0)
     return LasRecord(lattice.index, counts, stretch, windows, lower, first_shape, estimate, spread, *nothing)
 

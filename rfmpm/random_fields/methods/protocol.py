@@ -17,8 +17,8 @@ class FieldMethod(Protocol):
     Record: type[Any]
 
     @staticmethod
-    def prepare(correlation: Anisotropy, points: np.ndarray) -> Any:
-        """Make the record for points, shape (n, 2) [m]."""
+    def prepare(correlation: Anisotropy, points: np.ndarray, **options: float) -> Any:
+        """Make the record for points, shape (n, 2) [m]; what `OPTIONS` lists of the method may be given by name."""
 
     @staticmethod
     def n_variables(record: Any) -> int:

@@ -55,10 +55,15 @@ def test_coincident_points_get_one_value():
 
 def test_what_is_not_a_correlation_is_refused():
     class Wave:
+        theta_h = theta_v = 1.0
+        rotation = 0.3
+
         def rho(self, lag_x, lag_y):
             return np.where(np.hypot(lag_x, lag_y) < 1.0, 1.0, -0.5)
 
-    with pytest.raises(ValueError, match="not positive definite"):
+    with pytest.raises(
+        ValueError, match=r"scale_of_fluctuation_v_m = 1, rotation_deg = 17\.\d+ .* not positive definite"
+    ):
         Cholesky.prepare(Wave(), lattice(5, 5, 0.7))
 
 

@@ -117,12 +117,12 @@ def test_coincident_points_differ_by_their_nuggets_alone(settings):
     ("changes", "said"),
     [
         ({"nugget": 1.0}, "nugget = 1.0: must be at least 0 and less than 1"),
-        ({"nugget": 0.1, "averaging": "volume"}, "nugget: must be 0 where averaging = 'volume'"),
-        ({"averaging": "cell"}, "averaging = 'cell': must be one of point, volume"),
-        ({"correlation_space": "log"}, "correlation_space = 'log': must be one of gaussian, physical"),
-        ({"distribution": "beta", "upper_over_mean": None}, "upper_over_mean: missing; distribution = 'beta' needs it"),
+        ({"nugget": 0.1, "averaging": "volume"}, 'nugget: must be 0 where averaging = "volume"'),
+        ({"averaging": "cell"}, 'averaging = "cell": must be one of point, volume'),
+        ({"correlation_space": "log"}, 'correlation_space = "log": must be one of gaussian, physical'),
+        ({"distribution": "beta", "upper_over_mean": None}, 'upper_over_mean: missing; distribution = "beta" needs it'),
         ({"distribution": "empirical", "sample": None}, "sample: missing"),
-        ({"correlation": "matern", "matern_nu": None}, "matern_nu: missing; correlation = 'matern' needs it"),
+        ({"correlation": "matern", "matern_nu": None}, 'matern_nu: missing; correlation = "matern" needs it'),
     ],
     ids=str,
 )
@@ -142,7 +142,7 @@ def test_a_smooth_correlation_that_no_lognormal_has_is_refused_with_what_to_chan
 
 def test_averages_need_to_know_their_box(settings, points):
     settings.averaging = "volume"
-    with pytest.raises(ValueError, match="needs the size of the points' boxes"):
+    with pytest.raises(ValueError, match="needs the size of the boxes of the points"):
         prepare(settings, 20e3, points)
 
 

@@ -5,7 +5,6 @@ import pytest
 
 from rfmpm.random_fields.marginals import MARGINALS, Lognormal
 from rfmpm.random_fields.measurements import (
-    Measurements,
     conditional_moments,
     distinct,
     standard_normal_data,
@@ -33,20 +32,20 @@ def test_the_inverse_of_a_lognormal_with_a_spread_of_two():
 
 
 @pytest.mark.parametrize("value", [0.0, -5.0, 1e9, np.inf])
-def test_a_value_out_of_range_is_refused_by_its_position(value):
-    data = Measurements(PLACES, np.array([20e3, value, 20e3]), np.zeros(3))
-    with pytest.raises(ValueError, match=r"data\.1: the value .* outside"):
+def test_a_value_out_of_range_is_refused_by_its_label_in_the_unit_of_the_study(value, measured):
+    data = measured(PLACES, [20e3, value, 20e3])
+    with pytest.raises(ValueError, match=r"data\.1 lies outside what .* 2\.7\d+ kPa to 139\.\d kPa there"):
         standard_normal_data(Lognormal.from_moments(20e3, 0.25), data)
 
 
-def test_a_lognormal_error_of_a_lognormal_value_is_a_normal_error():
+def test_a_lognormal_error_of_a_lognormal_value_is_a_normal_error(measured):
     marginal = Lognormal.from_moments(20e3, 0.25)
-    found = standard_normal_data(marginal, Measurements(PLACES[:1], np.array([30e3]), np.array([0.1])))
+    found = standard_normal_data(marginal, measured(PLACES[:1], [30e3], 0.1))
     assert found.error_variances == pytest.approx(np.log(1.01) / np.log(1.0625), rel=1e-7)  # slope by differences
 
 
-def test_exact_values_that_say_the_same_at_one_place_count_once_and_others_contradict():
-    same = Measurements(PLACES, np.array([18e3, 21e3, 21e3]), np.zeros(3))
+def test_exact_values_that_say_the_same_at_one_place_count_once_and_others_contradict(measured):
+    same = measured(PLACES, [18e3, 21e3, 21e3])
     assert len(distinct(same).values) == 2
     other = same._replace(values=np.array([18e3, 21e3, 22e3]))
     with pytest.raises(ValueError, match=r"data\.1 and data\.2 contradict"):

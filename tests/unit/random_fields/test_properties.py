@@ -159,11 +159,12 @@ def test_layers_have_their_own_moments_scales_rotation_and_variables(layered, si
     np.testing.assert_allclose(medians[parts[1].members], 12e3 / np.sqrt(1.01), rtol=1e-12)
 
 
-def test_a_layer_without_points_takes_no_variables(layered, site):
-    lowest = site.points[site.points[:, 1] < 1.5]
-    prepared = properties.prepare(layered, site._replace(points=lowest))
-    assert [part.settings.scale_of_fluctuation_h_m for part in prepared.entries["cohesion"].parts] == [2.0]
-    assert prepared.n_variables == len(lowest)
+def test_a_soil_without_points_is_refused_by_its_place(layered, site):
+    lowest, highest = site.points[site.points[:, 1] < 1.5], site.points[site.points[:, 1] > 4.0]
+    with pytest.raises(ValueError, match=r"random_field\.cohesion: layer: no point lies in this soil"):
+        properties.prepare(layered, site._replace(points=lowest))
+    with pytest.raises(ValueError, match=r"random_field\.cohesion: layer\.0: no point lies in this soil"):
+        properties.prepare(layered, site._replace(points=highest))
 
 
 def test_layers_and_correlation_together(study, site):

@@ -37,7 +37,7 @@ def test_xi_of_another_shape_is_refused(settings, points, shape):
 def test_an_unknown_name_is_refused_with_the_choices(settings, points, key):
     known = getattr(settings, key)
     setattr(settings, key, "cubic")
-    with pytest.raises(ValueError, match=f"{key} = 'cubic': must be one of .*{known}"):
+    with pytest.raises(ValueError, match=f'{key} = "cubic": must be one of .*{known}'):
         prepare(settings, 20e3, points)
 
 

@@ -58,9 +58,9 @@ def test_each_point_has_the_distribution_of_its_own_depth(name):
 @pytest.mark.parametrize(
     ("gain", "spread", "sentence"),
     [
-        (-5e3, None, "the mean is 0 at a depth of 4 m: must be positive"),
-        (-6e3, 0.0, "the mean is -4000 at a depth of 4 m"),
-        (0.0, -2e3, "the standard deviation is -2000 at a depth of 4 m"),
+        (-5e3, None, "the mean is 0 kPa at a depth of 4 m: must be positive"),
+        (-6e3, 0.0, "the mean is -4 kPa at a depth of 4 m"),
+        (0.0, -2e3, "the standard deviation is -2 kPa at a depth of 4 m"),
     ],
 )
 def test_what_is_not_positive_is_refused_with_its_depth(gain, spread, sentence):
