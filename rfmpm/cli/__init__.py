@@ -219,14 +219,19 @@ def check(
 
 
 @command
-def estimate(study: StudyFile) -> None:
-    """Say what a campaign would cost, from a short trial; run nothing else."""
+def estimate(
+    study: StudyFile,
+    ranks: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Workers, on machines like this; default: cores.")
+    ] = None,
+) -> None:
+    """Say what a campaign would cost, from short trials; run nothing else."""
     from rfmpm.study import load_study
 
     settings = load_study(study)
     from rfmpm import cost
 
-    print_table(cost_row(key, value) for key, value in cost.estimate(settings).items())
+    print_table(cost_row(key, value) for key, value in cost.estimate(settings, ranks).items())
 
 
 @command
