@@ -40,8 +40,8 @@ def pauses() -> Iterator[None]:
 
 
 def wait_until(is_done: Callable[[], bool]) -> None:
-    """Poll with sleeps until something is so."""
-    for _ in pauses():
+    """Look at once, then poll with sleeps, until something is so."""
+    for _ in () if is_done() else pauses():
         if is_done():
             return
 
