@@ -3,11 +3,12 @@
     python -m rfmpm.benchmark.scheduling.stand_in DIR SECONDS.npy [--workers N]
     mpirun -n 2 python -m rfmpm.benchmark.scheduling.stand_in DIR CLAIMS --flood
 
-The first leaves the times at which each realisation began and ended in DIR/spans.npy, shape (n, 2), seconds. The second
-prints the seconds that rank 0 takes for a claim while claims wait in line.
+The first leaves in DIR/spans.npy, shape (n, 3), when each realisation began and ended [s] and in which process. The
+second prints the seconds that rank 0 takes for a claim while claims wait in line.
 """
 
 import argparse
+import os
 import time
 from pathlib import Path
 
@@ -65,12 +66,13 @@ def sleep_campaign(folder: Path, seconds: np.ndarray, workers: int | None) -> No
         began = time.time()
         time.sleep(seconds[index])
         row = dict.fromkeys(names, 0.0) | {"realisation": index, "status": STATUS["ok"], "status_reason": ""}
-        return row | {"run_out": began, "influence_distance": time.time()}
+        return row | {"run_out": began, "influence_distance": time.time(), "failure_volume": float(os.getpid())}
 
     realisation.run = sleep  # in this program alone
     rows = ensemble.run(study, folder / "campaign", workers=workers, progress=False)
     if rows is not None:
-        np.save(folder / "spans.npy", np.column_stack([rows["run_out"].values, rows["influence_distance"].values]))
+        spans = [rows[name].values for name in ("run_out", "influence_distance", "failure_volume")]
+        np.save(folder / "spans.npy", np.column_stack(spans))
 
 
 def flood(folder: Path, claims: int) -> None:
