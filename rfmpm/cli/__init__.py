@@ -10,6 +10,7 @@ import typer
 from rfmpm.cli.benchmark import benchmark
 from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY, end, ends_in_words
 from rfmpm.cli.sounding import sounding
+from rfmpm.cli.sweep import sweep
 from rfmpm.cli.tables import cost_row, outcome_rows, print_table
 
 FRAMES_OF_AN_ANIMATION = 60
@@ -24,6 +25,7 @@ app = typer.Typer(
 
 app.add_typer(benchmark, name="benchmark")
 app.command("sounding")(ends_in_words(sounding))
+app.command("sweep")(ends_in_words(sweep))
 
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.")]

@@ -27,7 +27,7 @@ def first_minimum(kinetic_energy: np.ndarray) -> int:
     last = len(kinetic_energy) - 1
     changes = np.flatnonzero(np.diff(kinetic_energy))
     for start, end in pairwise([0, *(changes + 1), last + 1]):  # stretches of one value
-        if 0 < start and end <= last and _is_deep(kinetic_energy, start, end):
+        if start > 0 and end <= last and _is_deep(kinetic_energy, start, end):
             return int(start + end - 1) // 2
     return last
 

@@ -12,10 +12,12 @@ from rfmpm.results.netcdf import (
 )
 from rfmpm.results.provenance import global_attributes, source_hash, versions
 from rfmpm.results.simulation import write_simulation
+from rfmpm.results.sweep import SWEEP_FILE, sweep_dataset
 from rfmpm.results.xi import read_xi, write_xi
 
 __all__ = [
     "ENSEMBLE_FILE",
+    "SWEEP_FILE",
     "UnreadableRows",
     "content_hash",
     "dataset",
@@ -24,6 +26,7 @@ __all__ = [
     "read_rows",
     "read_xi",
     "source_hash",
+    "sweep_dataset",
     "versions",
     "write_dataset",
     "write_rows",
