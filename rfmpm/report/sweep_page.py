@@ -10,6 +10,7 @@ import numpy as np
 from rfmpm.report.style import BLUE, DOTS_PER_INCH, GREY, ORANGE, VERMILION, drawing, new_figure
 
 COLOURS = (BLUE, VERMILION, ORANGE, GREY, "#009E73", "#CC79A7", "#56B4E9")
+ASIDE = 0.008  # of the axis, between two lines
 PANELS = {"mean_run_out": "mean run-out [m]", "exceedance_probability": "P(run-out > {limit:g} m) [-]"}
 
 
@@ -24,15 +25,18 @@ def draw_sweep(sweep, axes: list[str], limit: float, path: Path) -> None:
     """
     *others, last = axes
     with drawing():
-        figure = new_figure(9.0, 3.6)
+        figure = new_figure(10.0, 3.6)
         for axis, (name, label) in zip(figure.subplots(1, 2), PANELS.items(), strict=True):
-            for number, (text, cell) in enumerate(_lines(sweep, others)):
-                _draw_line(axis, cell, name, last, number, text)
+            lines = list(_lines(sweep, others))
+            for number, (text, cell) in enumerate(lines):
+                _draw_line(axis, cell, name, last, number, text, ASIDE * (number - 0.5 * (len(lines) - 1)))
             axis.set_xlabel(_label(sweep, last))
             axis.set_ylabel(label.format(limit=limit))
             axis.set_ylim(bottom=0.0)
         if others:
-            axis.legend(title=", ".join(_label(sweep, name) for name in others))
+            handles, texts = axis.get_legend_handles_labels()
+            title = ",\n".join(_label(sweep, name) for name in others)
+            figure.legend(handles, texts, title=title, loc="outside right upper")
         figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
 
 
@@ -42,12 +46,13 @@ def _lines(sweep, others: list[str]) -> Iterator[tuple[str, Any]]:
         yield ", ".join(_text(cell[name].values) for name in others), cell
 
 
-def _draw_line(axis, cell, name: str, last: str, number: int, text: str) -> None:
+def _draw_line(axis, cell, name: str, last: str, number: int, text: str, aside: float) -> None:
     value, lower, upper = (cell[f"{name}{end}"].values for end in ("", "_lower", "_upper"))
     is_known = np.isfinite(value) & np.isfinite(lower) & np.isfinite(upper)
     places = cell[last].values if cell[last].dtype.kind in "if" else np.arange(len(value))
     spread = np.where(is_known, [value - lower, upper - value], 0.0)
     colour = COLOURS[number % len(COLOURS)]
+    places = places + aside * np.ptp(places)  # so that bars of equal places can be told apart
     axis.errorbar(places, value, spread, fmt="o-", capsize=3, color=colour, label=text)
     if cell[last].dtype.kind not in "if":
         axis.set_xticks(places, [_text(entry) for entry in cell[last].values])

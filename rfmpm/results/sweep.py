@@ -51,7 +51,7 @@ def sweep_dataset(axes: Sequence[Any], campaigns: Mapping[tuple[int, ...], "xr.D
         whole = np.empty((*shape, *variable.shape), variable.dtype)
         for position, part in parts.items():
             whole[position] = part.values
-        data[name] = xr.Variable((*names, *variable.dims), whole, variable.attrs, _encoding(whole))
+        data[name] = xr.Variable((*names, *variable.dims), whole, variable.attrs, _encoding(variable))
     kept = ("title", "Conventions", "source", "seed", "rfmpm_version", "source_hash")
     attributes = {name: first.attrs[name] for name in kept if name in first.attrs}
     attributes["comment"] = (
@@ -62,8 +62,12 @@ def sweep_dataset(axes: Sequence[Any], campaigns: Mapping[tuple[int, ...], "xr.D
     return xr.Dataset(data | summary, _coordinates(axes) | coordinates, attributes)
 
 
-def _encoding(values: np.ndarray) -> dict[str, Any]:
-    return {} if values.dtype == object else {"zlib": True, "shuffle": True, "complevel": 4}
+def _encoding(variable: Any) -> dict[str, Any]:
+    """As in the campaigns' own files, but for the chunks."""
+    if variable.dtype == object:
+        return {}
+    kept = {name: value for name, value in variable.encoding.items() if name in ("dtype", "_FillValue")}
+    return kept | {"zlib": True, "shuffle": True, "complevel": 4}
 
 
 def _coordinates(axes: Sequence[Any]) -> dict[str, Any]:
