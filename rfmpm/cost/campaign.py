@@ -120,6 +120,7 @@ def _times(trials: Trials, count: int, workers: int) -> dict[str, int | float]:
         "realisation_longest_s": longest,
         "workers": workers,
         "preparation_s": before,
+        "worker_start_s": trials.speed.start,
         "report_s": after,
         "work_s": mean * count,
         "campaign_s": campaign,

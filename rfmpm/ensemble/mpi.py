@@ -80,6 +80,8 @@ class Ranks:
         Args:
             worker: of this rank.
         """
+        from rfmpm import realisation  # noqa: F401  (takes a second, in which rank 0 looks at the folder)
+
         if self._receive(0, _START):
             worker.work(self.rank, self._claim)
         self._meet()

@@ -18,19 +18,16 @@ class Loss(NamedTuple):
     """What a campaign of given times took."""
 
     span: float  # from the first start of a realisation to the last end [s]
+    late: float  # how much later than the first worker the others started, mean over all [s]
     ideal: float  # the least that any schedule could take [s]
-    greedy: float  # what the same order would take if nothing but the realisations took time [s]
+    greedy: float  # what handing out in order takes if nothing but the realisations takes time [s]
     between: float  # median time between two realisations of a worker [s]
+    lost: float  # time between realisations over time in them, of all workers [-]
 
     @property
     def over_ideal(self) -> float:
-        """Share by which it took longer than ideal [-]."""
-        return self.span / self.ideal - 1.0
-
-    @property
-    def over_greedy(self) -> float:
-        """Share by which it took longer than if nothing but the realisations took time [-]."""
-        return self.span / self.greedy - 1.0
+        """Share by which it took longer than ideal for workers that start so late [-]."""
+        return self.span / (self.ideal + self.late) - 1.0
 
 
 def launcher() -> Path | None:
@@ -57,12 +54,16 @@ def measure(seconds: np.ndarray, workers: int, crew: str) -> Loss:
         under_mpi = [str(launcher()), "-n", str(workers), *stand_in]
         _run(under_mpi if crew == "ranks" else [*stand_in, "--workers", str(workers)])
         began, ended, worker = np.load(Path(scratch) / "spans.npy").T
-    gaps = [np.diff(np.column_stack([began, ended])[worker == w].ravel())[1::2] for w in np.unique(worker)]
+    own = [(began[worker == w], ended[worker == w]) for w in np.unique(worker)]
+    gaps = np.concatenate([np.sort(start)[1:] - np.sort(end)[:-1] for start, end in own])
+    starts = [start.min() for start, _ in own]
     return Loss(
         float(ended.max() - began.min()),
+        float(np.mean(starts) - min(starts)),
         ideal(seconds, workers),
         replay(seconds, workers).makespan,
-        float(np.median(np.concatenate(gaps))),
+        float(np.median(gaps)),
+        float(gaps.sum() / seconds.sum()),
     )
 
 
