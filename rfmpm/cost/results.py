@@ -12,14 +12,19 @@ from rfmpm import report, results
 from rfmpm.ensemble import segments
 from rfmpm.mpm.scene import Scene
 
-ROWS = 16
+
+class Size(NamedTuple):
+    """Of files of rows of one kind."""
+
+    file: float  # of no rows at all [bytes]
+    row: float  # [bytes]
 
 
 class Files(NamedTuple):
     """What files of rows and a report take."""
 
-    file: float  # of no rows at all [bytes]
-    row: float  # [bytes]
+    segment: Size
+    dataset: Size
     report: float  # [bytes]
     report_seconds: float  # besides simulating what it pictures [s]
 
@@ -36,24 +41,40 @@ def measure(study, scene: Scene, rows: list[dict[str, Any]], folder: Path) -> Fi
     Returns:
         What they take.
     """
-    many = [row | {"realisation": index} for index, row in enumerate(islice(cycle(_fitted(rows, study)), ROWS))]
+    number = segments.ROWS
+    many = [row | {"realisation": index} for index, row in enumerate(islice(cycle(_fitted(rows, study)), number))]
+    segment = _size([_segment(study, many[:1], folder / "one"), _segment(study, many, folder / "many")], number)
     path = folder / results.ENSEMBLE_FILE
-    results.write_rows(path, many[:1], study)
-    one = path.stat().st_size
     started = time.process_time()
     now = {name: time.strftime("%Y-%m-%dT%H:%M:%S+00:00") for name in ("start", "end")}
-    results.write_rows(path, many, study, now)
-    row = max(path.stat().st_size - one, 0) / (ROWS - 1)
+    dataset = []
+    for some in (many[:1], many):
+        results.write_dataset(path, results.dataset(some, study, now))
+        dataset.append(path.stat().st_size)
     (folder / "study.toml").write_text(study.to_toml(), encoding="utf-8")
-    points = {
-        "x": scene.points.position.x,
-        "y": scene.points.position.y,
-        "plastic_strain": np.zeros(scene.points.mass.size),
-    }
+    x, y = scene.points.position.x, scene.points.position.y
+    points = {"x": x, "y": y, "plastic_strain": np.zeros_like(x)}
     page = report.write(folder, simulate=lambda index: points | {"run_out": many[index]["run_out"]})
     seconds = time.process_time() - started
     made = [page, page.with_suffix(".json"), *(folder / "snapshots").glob("*")]
-    return Files(one - row, row, sum(file.stat().st_size for file in made), seconds)
+    return Files(segment, _size(dataset, number), sum(file.stat().st_size for file in made), seconds)
+
+
+def _segment(study, rows: list[dict[str, Any]], folder: Path) -> int:
+    """Bytes of a segment of some rows."""
+    target = folder / segments.SEGMENTS
+    target.mkdir(parents=True)
+    writer = segments.SegmentWriter(folder, study, 0)
+    for row in rows:
+        writer.add(row)
+    writer.flush()
+    return sum(path.stat().st_size for path in target.iterdir())
+
+
+def _size(bytes_of_one_and_many: list[int], many: int) -> Size:
+    one, all_of_them = bytes_of_one_and_many
+    row = max(all_of_them - one, 0) / (many - 1)
+    return Size(one - row, row)
 
 
 def _fitted(rows: list[dict[str, Any]], study) -> list[dict[str, Any]]:
@@ -84,4 +105,5 @@ def segment_count(realisation: float, count: int, workers: int) -> int:
 
 def disk(files: Files, count: int, segment_files: int) -> int:
     """Bytes of segments, dataset and report."""
-    return round((segment_files + 1) * files.file + 2 * count * files.row + files.report)
+    rows = count * (files.segment.row + files.dataset.row)
+    return round(rows + segment_files * files.segment.file + files.dataset.file + files.report)

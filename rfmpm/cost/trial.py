@@ -1,17 +1,18 @@
 """Short trials on this machine: how fast a worker is in the true scene, and how many steps realisations take."""
 
-import os
 import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from rfmpm import realisation, results
+from rfmpm import realisation
+from rfmpm.ensemble import segments
 from rfmpm.study import StudyError
 
 FIRST_STEPS = 200
@@ -73,7 +74,11 @@ def _measure(study, store: Path, time_step: float) -> Speed:
         prepared = realisation.prepare(study, store)
         realisation.compile_kernels(prepared)
         row = begin(prepared, time_step)  # brings what a first realisation and a first segment import
-        results.write_rows(store / f"{os.getpid()}.nc", [row], study)
+        with TemporaryDirectory() as folder:
+            (Path(folder) / segments.SEGMENTS).mkdir()
+            writer = segments.SegmentWriter(Path(folder), study, 0)
+            writer.add(row)
+            writer.flush()
         start = time.process_time()
         _gate.wait()
         beside = min(_timed(prepared, time_step)[0] for _ in range(3))
