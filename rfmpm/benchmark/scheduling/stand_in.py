@@ -62,7 +62,7 @@ def sleep_campaign(folder: Path, seconds: np.ndarray, workers: int | None) -> No
     study = Study(**STUDY).with_changes({"study.realisations": len(seconds)})
     names = [variable.name for variable in active_variables(study)]
 
-    def sleep(prepared, index):
+    def sleep(prepared, index, **_):
         began = time.time()
         time.sleep(seconds[index])
         row = dict.fromkeys(names, 0.0) | {"realisation": index, "status": STATUS["ok"], "status_reason": ""}
