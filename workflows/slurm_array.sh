@@ -35,15 +35,16 @@ end=$(((part + 1) * REALISATIONS / parts))
 rfmpm run "$STUDY" --realisations "$REALISATIONS" --indices "$first:$end" --out "$DIR/part-$part" \
     --workers "$SLURM_CPUS_PER_TASK" &
 campaign=$!
-trap 'kill -USR1 "$campaign"' USR1
-trap 'kill -TERM "$campaign"' TERM
+cancelled=no
+trap 'kill -USR1 "$campaign" 2>/dev/null' USR1
+trap 'cancelled=yes; kill -TERM "$campaign" 2>/dev/null' TERM
 while true; do # a signal ends a wait before the campaign has ended
     wait "$campaign"
     code=$?
     kill -0 "$campaign" 2>/dev/null || break
 done
 
-if [ "$code" -eq 75 ]; then
+if [ "$code" -eq 75 ] && [ "$cancelled" = no ]; then
     scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
     sleep 60 # Slurm ends this run of the job
     exit "$code"

@@ -4,7 +4,7 @@
 #     sbatch workflows/slurm_mpi.sh
 #
 # Two minutes before its time is over Slurm sends SIGUSR1; rfmpm writes what is finished and ends with exit code 75, and
-# the script goes back into the queue. To end it for good: touch DIR/STOP. Tried with Slurm 22.05 and MPICH, on one
+# the script goes back into the queue. To end it for good: scancel JOB, or touch DIR/STOP. Tried with Slurm 22.05 and MPICH, on one
 # machine.
 
 # ==== EDIT 1: resources ====
@@ -30,15 +30,16 @@ export OMP_NUM_THREADS=1 NUMBA_NUM_THREADS=1
 
 mpirun -n "$SLURM_NTASKS" rfmpm run "$STUDY" --out "$DIR" &
 campaign=$!
-trap 'kill -USR1 "$campaign"' USR1
-trap 'kill -TERM "$campaign"' TERM
+cancelled=no
+trap 'kill -USR1 "$campaign" 2>/dev/null' USR1
+trap 'cancelled=yes; kill -TERM "$campaign" 2>/dev/null' TERM
 while true; do # a signal ends a wait before the campaign has ended
     wait "$campaign"
     code=$?
     kill -0 "$campaign" 2>/dev/null || break
 done
 
-if [ "$code" -eq 75 ] && [ ! -e "$DIR/STOP" ]; then
+if [ "$code" -eq 75 ] && [ "$cancelled" = no ] && [ ! -e "$DIR/STOP" ]; then
     scontrol requeue "$SLURM_JOB_ID"
     sleep 60 # Slurm ends this run of the job
 fi
