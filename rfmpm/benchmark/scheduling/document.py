@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from rfmpm import ensemble, load_study
+from rfmpm import ensemble
 from rfmpm.benchmark.scheduling import overhead, prediction
 from rfmpm.benchmark.scheduling.picture import draw
 from rfmpm.benchmark.scheduling.replay import ideal, replay
 from rfmpm.benchmark.scheduling.stopping import biases
 from rfmpm.benchmark.scheduling.text import TEXT
-from rfmpm.study import Study
+from rfmpm.study import Study, load_study
 
 CONFIGS = Path(__file__).parents[3] / "configs"
 WORKERS, RANKS = 4, (64, 256, 1000, 4000)
