@@ -10,6 +10,7 @@ from rfmpm.benchmark.scheduling.replay import replay
 from rfmpm.cost import trial
 from rfmpm.cost.campaign import LEAST_ERROR, makespan, relative_error
 from rfmpm.cost.results import Files, Size, disk, segment_count
+from rfmpm.ensemble import segments
 from rfmpm.study import load_study
 
 COARSE = Path(__file__).parents[1] / "robustness" / "coarse.toml"
@@ -49,11 +50,11 @@ def test_error_falls_with_trials_and_never_below_what_speed_varies():
     assert relative_error(np.ones(1), 100) == 0.5
 
 
-def test_segments_hold_sixteen_rows_or_what_ten_seconds_give():
-    assert segment_count(0.001, 160, 1) == 10
-    assert segment_count(4.0, 30, 1) == 10  # three in ten seconds
-    assert segment_count(100.0, 30, 4) == 30
-    assert segment_count(0.001, 16, 4) == 4  # each worker writes its own
+def test_segments_hold_as_many_rows_or_seconds_as_a_worker_collects():
+    assert segment_count(1e-6, 10 * segments.ROWS, 1) == 10
+    assert segment_count(1.01 * segments.SECONDS, 30, 4) == 30
+    assert segment_count(0.4 * segments.SECONDS, 30, 1) == 10  # the third ends after the time
+    assert segment_count(1e-6, 4, 4) == 4  # each worker writes its own
 
 
 def test_disk_adds_segments_dataset_and_report():
