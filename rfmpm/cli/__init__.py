@@ -14,6 +14,7 @@ from rfmpm.cli.rerun import rerun
 from rfmpm.cli.run import OutFolder, StudyFile, run
 from rfmpm.cli.sounding import sounding
 from rfmpm.cli.status import status
+from rfmpm.cli.sweep import sweep
 from rfmpm.cli.tables import cost_row, outcome_rows, print_table
 
 FRAMES_OF_AN_ANIMATION = 60
@@ -32,6 +33,7 @@ app.add_typer(benchmark, name="benchmark")
 app.command("merge")(ends_in_words(merge))
 app.command("rerun")(ends_in_words(rerun))
 app.command("sounding")(ends_in_words(sounding))
+app.command("sweep")(ends_in_words(sweep))
 
 Index = Annotated[int, typer.Option("--index", min=0, metavar="I", help="Which realisation.")]
 
@@ -184,14 +186,19 @@ def _make_fields(settings: Any, source: Path) -> None:
 
 
 @command
-def estimate(study: StudyFile) -> None:
-    """Say what a campaign would cost, from a short trial; run nothing else."""
+def estimate(
+    study: StudyFile,
+    ranks: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Workers, on machines like this; default: cores.")
+    ] = None,
+) -> None:
+    """Say what a campaign would cost, from short trials; run nothing else."""
     from rfmpm.study import load_study
 
     settings = load_study(study)
     from rfmpm import cost
 
-    print_table(cost_row(key, value) for key, value in cost.estimate(settings).items())
+    print_table(cost_row(key, value) for key, value in cost.estimate(settings, ranks).items())
 
 
 @command

@@ -82,3 +82,11 @@ def fields() -> Write:
     from rfmpm.benchmark.fields.document import run
 
     return run
+
+
+@command
+def scheduling() -> Write:
+    """Overhead of handing out, 1000 ranks simulated, bias of stopping early, cost predicted: scheduling.md."""
+    from rfmpm.benchmark.scheduling.document import run
+
+    return run

@@ -37,12 +37,12 @@ def _refusals() -> type[Exception]:
 
 def end(message: str, code: int) -> NoReturn:
     """Say why, and leave with an exit code."""
-    if _is_first_rank():
+    if is_first_rank():
         typer.echo(f"rfmpm: {message}", err=True)
     raise typer.Exit(code)
 
 
-def _is_first_rank() -> bool:
+def is_first_rank() -> bool:
     """Whether this process speaks for all: told from the launcher, so that no command needs MPI to say so."""
     told = [os.environ[name] for name in RANK_VARIABLES if name in os.environ]
     return all(rank == "0" for rank in told or [os.environ.get("SLURM_PROCID", "0")])

@@ -38,7 +38,7 @@ def _with_unit(value: Any, variable: Any) -> str:
 
 
 def cost_row(key: str, value: Any) -> tuple[str, str]:
-    """Label and text of a cost whose key ends in its unit: `time_step_s`, `memory_bytes`, or a count without one."""
+    """Label and text of a cost whose key ends in its unit (`time_step_s`, `memory_bytes`, `cell_m`), or of a number."""
     from rfmpm.report.words import duration
 
     name, _, unit = key.rpartition("_")
@@ -46,4 +46,6 @@ def cost_row(key: str, value: Any) -> tuple[str, str]:
         return name.replace("_", " "), duration(value)
     if unit == "bytes":
         return name.replace("_", " "), f"{value / 1e6:,.3g} MB" if value < 1e9 else f"{value / 1e9:,.3g} GB"
+    if unit == "m":
+        return name.replace("_", " "), f"{value:.4g} m"
     return key.replace("_", " "), f"{value:,}" if isinstance(value, int) else str(value)

@@ -9,7 +9,7 @@ from rfmpm.ensemble.dispatcher import Dispatcher
 from rfmpm.ensemble.markers import Task
 from rfmpm.ensemble.worker import Report, Worker
 
-LONGEST_SLEEP = 0.01  # seconds
+LONGEST_SLEEP = 0.001  # seconds; waiting so costs 2 % of a processor
 _START, _CLAIM, _ANSWER = 1, 2, 3  # message tags
 
 
@@ -56,8 +56,8 @@ def pauses() -> Iterator[None]:
 
 
 def wait_until(is_done: Callable[[], bool]) -> None:
-    """Poll with sleeps until something is so."""
-    for _ in pauses():
+    """Look at once, then poll with sleeps, until something is so."""
+    for _ in () if is_done() else pauses():
         if is_done():
             return
 
@@ -102,6 +102,8 @@ class Ranks:
         Args:
             worker: of this rank.
         """
+        from rfmpm import realisation  # noqa: F401  (takes a second, in which rank 0 looks at the folder)
+
         if self._receive(0, _START):
             worker.work(self.rank, self._claim)
         self._meet()

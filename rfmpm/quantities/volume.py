@@ -1,5 +1,7 @@
 """How much comes down, in all and in the first slide."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from rfmpm.quantities.state import FinalState
@@ -21,7 +23,25 @@ def first_minimum(kinetic_energy: np.ndarray) -> int:
     Returns:
         Index of the first minimum between a fall and a rise of 5 % of the largest value or more; else the last index.
     """
-    from scipy.signal import find_peaks
+    # As scipy.signal.find_peaks, whose import would cost every worker a second and 100 MB.
+    last = len(kinetic_energy) - 1
+    changes = np.flatnonzero(np.diff(kinetic_energy))
+    for start, end in pairwise([0, *(changes + 1), last + 1]):  # stretches of one value
+        if start > 0 and end <= last and _is_deep(kinetic_energy, start, end):
+            return int(start + end - 1) // 2
+    return last
 
-    minima, _ = find_peaks(-kinetic_energy, prominence=PROMINENCE * kinetic_energy.max())
-    return int(minima[0]) if len(minima) else len(kinetic_energy) - 1
+
+def _is_deep(energy: np.ndarray, start: int, end: int) -> bool:
+    """Whether a stretch of one value lies far enough below the highest points that part it from lower ones."""
+    lowest = energy[start]
+    if energy[start - 1] < lowest or energy[end] < lowest:
+        return False
+    left, right = _highest(energy[start - 1 :: -1], lowest), _highest(energy[end:], lowest)
+    return min(left, right) - lowest >= PROMINENCE * energy.max()
+
+
+def _highest(values: np.ndarray, lowest: float) -> float:
+    """The largest of the values before the first one below `lowest`."""
+    below = np.flatnonzero(values < lowest)
+    return values[: below[0] if len(below) else None].max()

@@ -15,11 +15,13 @@ from rfmpm.results.row_files import (
     write_rows,
 )
 from rfmpm.results.simulation import write_simulation
+from rfmpm.results.sweep import SWEEP_FILE, sweep_dataset
 from rfmpm.results.xi import read_xi, write_xi
 
 __all__ = [
     "ENSEMBLE_FILE",
     "ROWS_SUFFIX",
+    "SWEEP_FILE",
     "Columns",
     "StoredRows",
     "UnreadableRows",
@@ -34,6 +36,7 @@ __all__ = [
     "read_xi",
     "row_attributes",
     "source_hash",
+    "sweep_dataset",
     "versions",
     "write_dataset",
     "write_ensemble",

@@ -445,7 +445,7 @@ def test_check_prints_the_schema_alone_on_standard_output():
 
 def test_estimate_prints_what_the_campaign_would_cost(replace):
     costs = {"points": 4040, "time_step_s": 0.00123, "total_s": 100.0, "memory_bytes": 3.2e7, "disk_bytes": 2.5e9}
-    replace("cost", estimate=lambda study: costs)
+    replace("cost", estimate=lambda study, ranks: costs)
     lines = [" ".join(line.split()) for line in call("estimate", RANDOM).stdout.splitlines()]
     assert lines == ["points 4,040", "time step 0.00123 s", "total 100 s", "memory 32 MB", "disk 2.5 GB"]
 

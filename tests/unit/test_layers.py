@@ -12,7 +12,8 @@ PACKAGE = Path(__file__).parents[2] / "rfmpm"
 FLOORS = {
     7: ("cli",),
     6.5: ("rfmpm", "benchmark"),  # the public names; what measures the whole house
-    6: ("ensemble", "report", "cost"),
+    6.2: ("cost",),
+    6: ("ensemble", "report"),
     5.5: ("campaign_status",),
     5: ("realisation", "results"),
     4.5: ("observer",),

@@ -45,3 +45,13 @@ def test_first_minimum_of_the_kinetic_energy(kinetic_energy, index):
 @pytest.mark.parametrize("scale", [1e-6, 1e6])
 def test_first_minimum_knows_no_unit(scale):
     assert first_minimum(scale * np.array([0.0, 20.0, 19.5, 20.0, 8.0, 12.0, 0.0])) == 4
+
+
+def test_first_minimum_is_that_of_find_peaks():
+    from scipy.signal import find_peaks
+
+    rng = np.random.default_rng(1)
+    for length in rng.integers(1, 200, 300):
+        energy = np.abs(np.cumsum(rng.integers(-2, 3, length))).astype(float)  # with plateaus
+        minima, _ = find_peaks(-energy, prominence=0.05 * energy.max())
+        assert first_minimum(energy) == (minima[0] if len(minima) else length - 1)
