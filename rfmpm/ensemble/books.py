@@ -7,6 +7,7 @@ from typing import Any
 from rfmpm.variables import FAILED, STATUS
 
 FAILED_CODES = frozenset(STATUS[name] for name in FAILED)
+FEWEST = 10  # failures that end a campaign early; fewer are judged when it is complete
 NAMES = {code: name for name, code in STATUS.items()}
 
 
@@ -64,7 +65,7 @@ class Books:
                 f'{self._example(next(iter(failures)))}, and failures.action = "abort"; mend what made it fail, or set '
                 'failures.action to "record" or "retry" and run the same command again'
             )
-        if failed > self.allowed * self.total:
+        if failed > max(self.allowed * self.total, FEWEST - 1):
             commonest = max(failures, key=failures.__getitem__)
             return (
                 f"{failed} of {self.total} realisations have failed, more than the allowed {self.allowed:.3g} of them "

@@ -74,9 +74,13 @@ class Worker:
         from rfmpm import realisation
 
         if self.prepared is None:
-            with self.stop.interruptible():
-                self.prepared = realisation.prepare(self.study, store=self.directory / WORK)
-                realisation.compile_kernels(self.prepared)
+            # Between these steps only: an exception that a signal raises amid compiling leaves half-made kernels.
+            self.stop.abandon_if_requested()
+            prepared = realisation.prepare(self.study, store=self.directory / WORK)
+            self.stop.abandon_if_requested()
+            realisation.compile_kernels(prepared)
+            self.stop.abandon_if_requested()
+            self.prepared = prepared
 
     def work(self, rank: int, claim: Claim) -> None:
         """Run what `claim` hands out until nothing is left or something asks for the end; finished rows are written.

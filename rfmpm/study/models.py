@@ -226,7 +226,7 @@ class Failures(Table):
     )
     retries: Annotated[int, Strict()] = Field(2, ge=1, le=100, description="How often one is repeated by retry")
     max_failed_fraction: Annotated[Number, Field(ge=0, le=1)] = Field(
-        0.05, description="Share of all realisations beyond which failed ones end the campaign [1]"
+        0.05, description="Share of all realisations beyond which failed ones, ten or more, end the campaign early [1]"
     )
     realisation_time_limit_s: Positive | None = Field(
         None, description="Elapsed time after which a realisation is given up as timeout [s]; left out: no limit"

@@ -44,8 +44,8 @@ def test_what_cannot_be_written_stops_the_campaign_and_leaves_no_trace(tmp_path,
     assert stopped.returncode == 75, stopped.stderr
     assert message in stopped.stderr
     assert "run the same command again" in stopped.stderr
-    left = {path.name for path in tmp_path.iterdir()} - {"work", "segments"}
-    assert left == {".lock", "journal.jsonl", "rfmpm.log", "study.toml"}
+    left = {path.name for path in tmp_path.iterdir()} - {"work", "segments", "running"}
+    assert left == {".lock", "journal.jsonl", "rfmpm.log", "status.json", "study.toml"}
     kept = {path: path.read_bytes() for path in (tmp_path / "segments").iterdir()}
     assert not any(path.name.startswith(".") for path in kept)
     completed = run(tmp_path)

@@ -250,7 +250,7 @@ def test_abort_keeps_the_row_says_so_again_and_goes_on_under_another_policy(stud
 
 def test_too_many_failures_end_it_and_more_may_be_allowed(study, tmp_path, monkeypatch):
     fail_first(monkeypatch, range(REALISATIONS), 1)
-    with pytest.raises(ensemble.CampaignFailed, match=r"3 of 12 realisations have failed.* \(3 crashed\)"):
+    with pytest.raises(ensemble.CampaignFailed, match=r"10 of 12 realisations have failed.* \(10 crashed\)"):
         run(policy(study, max_failed_fraction=2 / REALISATIONS), tmp_path)
     assert not (tmp_path / "ensemble.nc").exists()
     found = run(study, tmp_path, allow_failed=1.0)
