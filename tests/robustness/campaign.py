@@ -1,9 +1,12 @@
 """Runs the coarse campaign as a program of its own, so that tests can kill it or start it under mpirun.
 
 python campaign.py DIR REALISATIONS [WORKERS] [SECONDS each realisation is held up] [WALL TIME in seconds]
+With TALLY in the environment, every realisation that begins is a line of that file; with SEGMENT_SECONDS, segments are
+written that often.
 Prints the hash of the content on rank 0; exit codes as those of `rfmpm run`.
 """
 
+import os
 import sys
 import time
 from pathlib import Path
@@ -20,6 +23,9 @@ def hold_up(seconds: float) -> None:
     run = realisation.run
 
     def slow_run(prepared, index, watch):
+        if "TALLY" in os.environ:
+            with open(os.environ["TALLY"], "a") as tally:
+                tally.write(f"{index}\n")
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             watch()
@@ -31,6 +37,7 @@ def hold_up(seconds: float) -> None:
 
 def main(directory: str, realisations: str, workers: str = "", seconds: str = "0", wall_time: str = "") -> int:
     segments.ROWS = ROWS_OF_A_SEGMENT
+    segments.SECONDS = float(os.environ.get("SEGMENT_SECONDS", segments.SECONDS))
     hold_up(float(seconds))
     options = {"progress": False, "wall_time": float(wall_time) if wall_time else None}
     try:

@@ -34,9 +34,9 @@ def clock(monkeypatch):
     return now
 
 
-def make(notes, shown, action="record", allowed=1.0, **options):
+def make(notes, shown, action="record", allowed=1.0, before=None, **options):
     progress = SimpleNamespace(show=lambda done, failed: shown.append((done, failed)))
-    books = Books(TOTAL, {}, action, allowed)
+    books = Books(TOTAL, before or {}, action, allowed)
     return Dispatcher(Todo([range(4, 6), range(7, 8)]), {5: 2}, books, notes, progress, **options)
 
 
@@ -103,11 +103,11 @@ def test_abort_ends_at_the_first_failure(notes, shown):
 
 
 def test_more_failures_than_allowed_end_it_and_no_sooner(notes, shown):
-    desk = make(notes, shown, allowed=1 / TOTAL)
+    desk = make(notes, shown, allowed=10 / TOTAL, before={STATUS["crashed"]: 9})
     desk.answer(0, Report())
     assert desk.answer(0, after(4, "timeout", "slow")) == Task(5, 3)  # as many as are allowed
     assert desk.answer(0, after(5, "diverged", "energy")) is None
-    assert "2 of 100 realisations have failed" in desk.verdict
+    assert "11 of 100 realisations have failed" in desk.verdict
 
 
 def test_nothing_is_handed_out_that_would_outlast_the_deadline(notes, shown, clock):
