@@ -50,9 +50,16 @@ def kill(process: subprocess.Popen, victim: str, chance: random.Random) -> None:
         os.killpg(process.pid, signal.SIGKILL)
         return
     children = psutil.Process(process.pid).children(recursive=True)
-    members = [child for child in children if "campaign.py" in " ".join(child.cmdline())]
+    members = [child for child in children if is_of_campaign(child)]
     target = process.pid if victim == "launcher" or not members else chance.choice(members).pid
     os.kill(target, signal.SIGKILL)
+
+
+def is_of_campaign(child: psutil.Process) -> bool:
+    try:
+        return "campaign.py" in " ".join(child.cmdline())
+    except psutil.Error:  # it has ended
+        return False
 
 
 def wait_for_end_of_group(process: subprocess.Popen) -> None:
