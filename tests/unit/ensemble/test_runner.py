@@ -32,7 +32,7 @@ def reference(study, tmp_path_factory):
     return run(study, tmp_path_factory.mktemp("reference"))
 
 
-@pytest.mark.parametrize("workers", [2, 4])
+@pytest.mark.parametrize("workers", [2, 3, 4, 8])
 def test_same_bits_for_any_number_of_workers(study, reference, tmp_path, workers):
     found = run(study, tmp_path, workers=workers)
     assert results.content_hash(found) == results.content_hash(reference)
