@@ -36,8 +36,10 @@ def main() -> None:
         *("--realisations", str(REALISATIONS), "--out", str(FOLDER)),
     ]
     subprocess.run(command, check=True)
-    for name in ("sweep.md", "sweep.png"):
-        shutil.copy(FOLDER / name, ROOT / "reports" / name)
+    shutil.copy(FOLDER / "sweep.png", ROOT / "reports")
+    title, rest = (FOLDER / "sweep.md").read_text("utf-8").split("\n", 1)
+    page = f"{title}\n\n`python workflows/2_sweep.py` wrote this.\n{rest}"
+    (ROOT / "reports" / "sweep.md").write_text(page, "utf-8")
 
 
 if __name__ == "__main__":
