@@ -119,4 +119,5 @@ def _columns(paths: Iterable[Path]) -> Iterator[tuple]:
             columns = read_rows(path).columns
         except (OSError, UnreadableRows):  # torn, or put aside this moment
             continue
-        yield columns["realisation"], columns["run_out"], columns["run_out_censored"] == 1
+        # copies: a column as it was read keeps the whole file, surfaces included, in memory
+        yield columns["realisation"].copy(), columns["run_out"].copy(), columns["run_out_censored"] == 1
