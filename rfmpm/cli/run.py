@@ -11,6 +11,10 @@ from rfmpm.cli.ranges import index_range
 
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.")]
+CLOCK = re.compile(
+    r"(?P<days>\d+)-(?P<hours>\d+):(?P<minutes>\d\d)(?::(?P<seconds>\d\d))?"
+    r"|(?:(?P<h>\d+):)?(?P<m>\d+):(?P<s>\d\d)"
+)
 UNITS = {"s": 1.0, "m": 60.0, "h": 3600.0, "d": 86400.0}
 
 
@@ -18,7 +22,8 @@ def seconds_of(text: str) -> float:
     """Read a time as people and batch systems write it.
 
     Args:
-        text: seconds (3600), a number with a unit (90m, 6h, 1.5d), or a clock (5:30:00, 30:00, 1-12:00:00).
+        text: seconds (3600), a number with a unit (90m, 6h, 1.5d), or a clock as Slurm reads it: hours:minutes:seconds,
+            minutes:seconds, days-hours:minutes:seconds, days-hours:minutes (5:30:00, 30:00, 1-12:00:00, 1-12:00).
 
     Returns:
         Seconds.
@@ -28,9 +33,9 @@ def seconds_of(text: str) -> float:
     """
     if found := re.fullmatch(r"(\d+(?:\.\d*)?)([smhd]?)", text.strip().lower()):
         seconds = float(found[1]) * UNITS[found[2] or "s"]
-    elif found := re.fullmatch(r"(?:(\d+)-)?(?:(\d+):)?(\d+):(\d\d)", text.strip()):
-        days, hours, minutes, rest = (float(part or 0) for part in found.groups())
-        seconds = days * UNITS["d"] + hours * UNITS["h"] + minutes * UNITS["m"] + rest
+    elif found := CLOCK.fullmatch(text.strip()):
+        parts = {unit: float(number) for unit, number in found.groupdict(default="0").items()}
+        seconds = sum(UNITS[name[0]] * number for name, number in parts.items())
     else:
         seconds = 0.0
     if seconds <= 0.0:
