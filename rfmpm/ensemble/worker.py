@@ -105,7 +105,8 @@ class Worker:
                 segments = writer.flush()
             except Exception as failure:
                 error = error or _described(failure)
-            marker.remove()
+            with suppress(OSError):  # the last report has to go out; a marker that stays counts as one start too many
+                marker.remove()
             claim(Report(segments=segments, is_last=True, stopping=self.stop.reason, error=error))
 
     def _loop(self, writer: SegmentWriter, marker: Marker, claim: Claim) -> None:
