@@ -118,9 +118,9 @@ def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[st
 
 
 def _end_if_too_many_failed(dataset: Any, allowed: float) -> None:
-    from rfmpm.variables import FAILED, STATUS
+    from rfmpm.variables import FAILED_CODES
 
-    failed = int(dataset["status"].isin([STATUS[name] for name in FAILED]).sum())
+    failed = int(dataset["status"].isin(list(FAILED_CODES)).sum())
     total = dataset.sizes["realisation"]
     if failed > allowed * total:
         end(f"{failed} of {total} realisations failed, more than the allowed {allowed:.3g} of them", TOO_MANY_FAILED)

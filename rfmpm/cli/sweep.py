@@ -88,7 +88,7 @@ def _campaigns(grid: list, folder: Path, workers: int | None) -> dict[tuple[int,
 
     try:
         return {cell.position: rows for cell, rows in run_cells(grid, folder, workers, tell)}
-    except (ensemble.FolderMismatch, ensemble.LauncherMismatch) as error:
+    except (ensemble.FolderMismatch, ensemble.LauncherMismatch, ensemble.RowsDiffer) as error:
         end(str(error), WRONG_STUDY)
     except ensemble.CampaignFailed as error:
         end(str(error), TOO_MANY_FAILED)

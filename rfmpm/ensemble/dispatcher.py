@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any
 
-from rfmpm.ensemble.books import FAILED_CODES, NAMES, Books
+from rfmpm.ensemble.books import Books
 from rfmpm.ensemble.markers import Task
 from rfmpm.ensemble.worker import Report
+from rfmpm.variables import FAILED_CODES, STATUS_NAMES
 
 
 class Todo:
@@ -102,7 +103,7 @@ class Dispatcher:
             self.books.enter(ended)
             self.longest = max(self.longest, ended.wall_time)
             if ended.status in FAILED_CODES:
-                status, at = NAMES[ended.status], ended.realisation
+                status, at = STATUS_NAMES[ended.status], ended.realisation
                 self.journal.write("failed", rank=rank, realisation=at, status=status, reason=ended.reason)
         if report.error:
             self.losses.append(f"worker {rank} could not go on: {report.error}")

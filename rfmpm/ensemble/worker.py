@@ -13,11 +13,9 @@ from rfmpm.ensemble.isolation import ChildDied, run_apart
 from rfmpm.ensemble.markers import Marker, Task
 from rfmpm.ensemble.segments import Row, SegmentWriter
 from rfmpm.ensemble.stop import Abandoned, Stop
-from rfmpm.variables import STATUS, failed_row
+from rfmpm.variables import BY_CHANCE, STATUS_NAMES, failed_row
 
 ISOLATED_FROM = 3  # the start from which a realisation gets a process of its own
-REPEATABLE = frozenset({STATUS["crashed"], STATUS["timeout"]})  # may end otherwise the next time
-STATUS_NAMES = {code: name for name, code in STATUS.items()}
 
 log = logging.getLogger("rfmpm.worker")
 
@@ -148,7 +146,7 @@ class Worker:
         times = 1 + (policy.retries if policy.action == "retry" else 0)
         for repetition in range(1, times + 1):
             row = self._attempt(index)
-            if row["status"] not in REPEATABLE:
+            if row["status"] not in BY_CHANCE:
                 return row
             log.warning("realisation %d, try %d of %d: %s", index, repetition, times, row["status_reason"])
         return row if times == 1 else {**row, "status_reason": f"{row['status_reason']}; tried {times} times"}

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rfmpm import estimators
-from rfmpm.variables import FAILED, STATUS
+from rfmpm.variables import FAILED_CODES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -85,7 +85,6 @@ def _coordinates(axes: Sequence[Any]) -> dict[str, Any]:
 
 
 def _summary(names, shape, campaigns: Mapping[tuple[int, ...], "xr.Dataset"], limit: float) -> dict[str, Any]:
-    failed_codes = [STATUS[name] for name in FAILED]
     columns = {f"{name}{end}": np.full(shape, np.nan) for name in SUMMARY for end in ("", "_lower", "_upper")}
     failed = np.zeros(shape, "int32")
     for position, rows in campaigns.items():
@@ -98,7 +97,7 @@ def _summary(names, shape, campaigns: Mapping[tuple[int, ...], "xr.Dataset"], li
             columns[name][position] = estimate.value
             columns[f"{name}_lower"][position] = estimate.lower
             columns[f"{name}_upper"][position] = estimate.upper
-        failed[position] = int(rows["status"].isin(failed_codes).sum())
+        failed[position] = int(rows["status"].isin(list(FAILED_CODES)).sum())
     ends = {"_lower": ", lower end of its 95 % interval", "_upper": ", upper end of its 95 % interval"}
     found = {}
     for name, values in columns.items():
