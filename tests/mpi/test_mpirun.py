@@ -98,7 +98,7 @@ def test_rank_that_dies_costs_a_start_and_the_third_is_made_apart(tmp_path, loca
 
 def test_rows_of_a_damaged_segment_run_again_before_the_campaign_ends(tmp_path, local_hash):
     command = [str(MPIRUN), "-n", "3", sys.executable, str(CAMPAIGN), str(tmp_path), REALISATIONS, "", "0.02"]
-    done = call(*command, TORN="1", PYTHONPATH=os.pathsep.join([str(TORN), os.environ.get("PYTHONPATH", "")]))
+    done = call(*command, TORN="0", PYTHONPATH=os.pathsep.join([str(TORN), os.environ.get("PYTHONPATH", "")]))
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip() == local_hash
     assert len(list((tmp_path / "quarantine").iterdir())) == 1
