@@ -8,7 +8,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
-from rfmpm.campaign_status import STATUS_FILE, STUDY_FILE, now
+from rfmpm.campaign_status import SEGMENTS, STATUS_FILE, STUDY_FILE, now
 from rfmpm.ensemble.journal import JOURNAL_FILE, Journal
 from rfmpm.ensemble.lock import LOCK_FILE, InUse, locked
 from rfmpm.results import ENSEMBLE_FILE
@@ -19,7 +19,7 @@ log = logging.getLogger("rfmpm")
 
 LOG_FILE = "rfmpm.log"
 STOP_FILE = "STOP"
-SEGMENTS, QUARANTINE, WORK, RUNNING, LOGS = "segments", "quarantine", "work", "running", "logs"
+QUARANTINE, WORK, RUNNING, LOGS = "quarantine", "work", "running", "logs"
 RESULTS = (
     *(SEGMENTS, QUARANTINE, WORK, RUNNING, LOGS),
     *(ENSEMBLE_FILE, STATUS_FILE, "report.html", "report.json", "snapshots"),
@@ -31,7 +31,7 @@ class FolderMismatch(ValueError):
 
 
 @contextmanager
-def opened(directory: Path, study, fresh: bool) -> Iterator["Journal"]:
+def opened(directory: Path, study, fresh: bool) -> Iterator[Journal]:
     """Take a folder for a campaign: check whose it is before anything is changed, lock it, open log and journal.
 
     Args:

@@ -98,11 +98,11 @@ class Worker:
                     self.prepare()
                     self._loop(writer, marker, claim)
             except Exception as failure:
-                error = _described(failure)
+                error = described(failure)
             try:
                 segments = writer.flush()
             except Exception as failure:
-                error = error or _described(failure)
+                error = error or described(failure)
             with suppress(OSError):  # the last report has to go out; a marker that stays counts as one start too many
                 marker.remove()
             claim(Report(segments=segments, is_last=True, stopping=self.stop.reason, error=error))
@@ -158,7 +158,7 @@ class Worker:
         try:
             return realisation.run(self.prepared, index, watch=self.stop.abandon_if_requested)
         except Exception as failure:
-            return failed_row(self.study, index, "crashed", _described(failure), wall_time=_since(started))
+            return failed_row(self.study, index, "crashed", described(failure), wall_time=_since(started))
 
     @contextmanager
     def _log_of(self, rank: int) -> Iterator[None]:
@@ -189,5 +189,6 @@ def _since(started: float) -> float:
     return time.perf_counter() - started
 
 
-def _described(failure: Exception) -> str:
+def described(failure: Exception) -> str:
+    """Say in one line what a realisation or a worker raised."""
     return " ".join(f"{type(failure).__name__}: {failure}".split())
