@@ -95,7 +95,7 @@ def run(
     typer.echo(f"report:  {reporting.write(folder)}")
     for line in reporting.summary_lines(dataset, settings):
         typer.echo(line)
-    _end_if_too_many_failed(dataset, settings.failures.max_failed_fraction if allow_failed is None else allow_failed)
+    end_if_too_many_failed(dataset, settings.failures.max_failed_fraction if allow_failed is None else allow_failed)
 
 
 def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[str, Any]) -> Any:
@@ -117,10 +117,12 @@ def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[st
         end(str(error), STOPPED_EARLY)
 
 
-def _end_if_too_many_failed(dataset: Any, allowed: float) -> None:
+def end_if_too_many_failed(dataset: Any, allowed: float, where: str = "") -> None:
+    """End with an exit code if more than the allowed share of rows failed; `where` says of which campaign."""
     from rfmpm.variables import FAILED_CODES
 
     failed = int(dataset["status"].isin(list(FAILED_CODES)).sum())
     total = dataset.sizes["realisation"]
     if failed > allowed * total:
-        end(f"{failed} of {total} realisations failed, more than the allowed {allowed:.3g} of them", TOO_MANY_FAILED)
+        share = f"more than the allowed {allowed:.3g} of them"
+        end(f"{where}{failed} of {total} realisations failed, {share}", TOO_MANY_FAILED)
