@@ -46,7 +46,7 @@ def sweep_dataset(axes: Sequence[Any], campaigns: Mapping[tuple[int, ...], "xr.D
     data = {}
     for name, variable in first.data_vars.items():
         parts = {position: rows[name] for position, rows in campaigns.items()}
-        if any(part.shape != variable.shape for part in parts.values()):
+        if any(part.shape != variable.shape or not _has_same_bins(part, variable) for part in parts.values()):
             continue
         whole = np.empty((*shape, *variable.shape), variable.dtype)
         for position, part in parts.items():
@@ -60,6 +60,10 @@ def sweep_dataset(axes: Sequence[Any], campaigns: Mapping[tuple[int, ...], "xr.D
     coordinates = {name: first.coords[name] for name in first.coords if any(name in v.dims for v in data.values())}
     summary = _summary(names, shape, campaigns, limit)
     return xr.Dataset(data | summary, _coordinates(axes) | coordinates, attributes)
+
+
+def _has_same_bins(part: Any, variable: Any) -> bool:
+    return "x" not in variable.dims or np.array_equal(part["x"].values, variable["x"].values)
 
 
 def _encoding(variable: Any) -> dict[str, Any]:
