@@ -49,6 +49,7 @@ def opened(directory: Path, study, fresh: bool) -> Iterator[Journal]:
         try:
             (directory / SEGMENTS).mkdir(parents=True, exist_ok=True)
             held.enter_context(locked(directory, now()))
+            check_owner(directory, study, fresh)  # again: a run that began at the same time may have ended since
             if fresh:
                 _discard(directory)
             _sweep(directory)
