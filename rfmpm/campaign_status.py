@@ -21,8 +21,20 @@ def now() -> str:
     return datetime.now(UTC).isoformat(timespec="milliseconds")
 
 
+def name_while_written(name: str) -> str:
+    """Name that a file of `replace_text` has until it is whole."""
+    return f".{name}.new"
+
+
+def replace_text(path: Path, text: str) -> None:
+    """Replace a small file at once, so that a reader never sees half of it; OSError if it cannot be written."""
+    temporary = path.with_name(name_while_written(path.name))
+    temporary.write_text(text, encoding="utf-8")
+    os.replace(temporary, path)
+
+
 def write(directory: Path, content: Mapping[str, Any]) -> None:
-    """Replace status.json at once, so that a reader never sees half of it.
+    """Replace status.json.
 
     Args:
         directory: of the campaign.
@@ -31,10 +43,7 @@ def write(directory: Path, content: Mapping[str, Any]) -> None:
     Raises:
         OSError: if it cannot be written.
     """
-    path = Path(directory) / STATUS_FILE
-    temporary = path.with_name(f".{STATUS_FILE}.new")
-    temporary.write_text(json.dumps(content, indent=1), encoding="utf-8")
-    os.replace(temporary, path)
+    replace_text(Path(directory) / STATUS_FILE, json.dumps(content, indent=1))
 
 
 def read(directory: Path) -> dict[str, Any]:
@@ -119,4 +128,5 @@ def _columns(paths: Iterable[Path]) -> Iterator[tuple]:
             columns = read_rows(path).columns
         except (OSError, UnreadableRows):  # torn, or put aside this moment
             continue
-        yield columns["realisation"], columns["run_out"], columns["run_out_censored"] == 1
+        # copies: a column as it was read keeps the whole file, surfaces included, in memory
+        yield columns["realisation"].copy(), columns["run_out"].copy(), columns["run_out_censored"] == 1

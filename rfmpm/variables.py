@@ -10,6 +10,9 @@ from typing import Any
 
 STATUS = {"ok": 0, "not_at_rest": 1, "diverged": 2, "left_grid": 3, "timeout": 4, "crashed": 5, "lost": 6}
 FAILED = frozenset({"diverged", "left_grid", "timeout", "crashed", "lost"})  # their quantities are NaN
+STATUS_NAMES = {code: name for name, code in STATUS.items()}
+FAILED_CODES = frozenset(STATUS[name] for name in FAILED)
+BY_CHANCE = frozenset(STATUS[name] for name in ("timeout", "crashed", "lost"))  # may end otherwise the next time
 
 _YES_NO = {"flag_values": (0, 1), "flag_meanings": "no yes"}
 _FAILED_SET = (

@@ -43,6 +43,7 @@ def _again(study: Any, index: int, frames: int) -> tuple[dict[str, Any], Any]:
     from threadpoolctl import threadpool_limits
 
     from rfmpm import realisation
+    from rfmpm.ensemble.worker import described
     from rfmpm.variables import failed_row
 
     with threadpool_limits(limits=1):  # as in a campaign
@@ -50,7 +51,7 @@ def _again(study: Any, index: int, frames: int) -> tuple[dict[str, Any], Any]:
         try:
             outcome = realisation.simulate(prepared, index, frames=frames)
         except Exception as failure:
-            reason = " ".join(f"{type(failure).__name__}: {failure}".split())
+            reason = described(failure)
             typer.echo(f"status  crashed: {reason}")
             return failed_row(study, index, "crashed", reason), None
     return realisation.as_row(outcome, index), outcome

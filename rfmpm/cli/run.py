@@ -11,6 +11,10 @@ from rfmpm.cli.ranges import index_range
 
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.")]
+CLOCK = re.compile(
+    r"(?P<days>\d+)-(?P<hours>\d+):(?P<minutes>\d\d)(?::(?P<seconds>\d\d))?"
+    r"|(?:(?P<h>\d+):)?(?P<m>\d+):(?P<s>\d\d)"
+)
 UNITS = {"s": 1.0, "m": 60.0, "h": 3600.0, "d": 86400.0}
 
 
@@ -18,7 +22,8 @@ def seconds_of(text: str) -> float:
     """Read a time as people and batch systems write it.
 
     Args:
-        text: seconds (3600), a number with a unit (90m, 6h, 1.5d), or a clock (5:30:00, 30:00, 1-12:00:00).
+        text: seconds (3600), a number with a unit (90m, 6h, 1.5d), or a clock as Slurm reads it: hours:minutes:seconds,
+            minutes:seconds, days-hours:minutes:seconds, days-hours:minutes (5:30:00, 30:00, 1-12:00:00, 1-12:00).
 
     Returns:
         Seconds.
@@ -28,9 +33,9 @@ def seconds_of(text: str) -> float:
     """
     if found := re.fullmatch(r"(\d+(?:\.\d*)?)([smhd]?)", text.strip().lower()):
         seconds = float(found[1]) * UNITS[found[2] or "s"]
-    elif found := re.fullmatch(r"(?:(\d+)-)?(?:(\d+):)?(\d+):(\d\d)", text.strip()):
-        days, hours, minutes, rest = (float(part or 0) for part in found.groups())
-        seconds = days * UNITS["d"] + hours * UNITS["h"] + minutes * UNITS["m"] + rest
+    elif found := CLOCK.fullmatch(text.strip()):
+        parts = {unit: float(number) for unit, number in found.groupdict(default="0").items()}
+        seconds = sum(UNITS[name[0]] * number for name, number in parts.items())
     else:
         seconds = 0.0
     if seconds <= 0.0:
@@ -90,7 +95,7 @@ def run(
     typer.echo(f"report:  {reporting.write(folder)}")
     for line in reporting.summary_lines(dataset, settings):
         typer.echo(line)
-    _end_if_too_many_failed(dataset, settings.failures.max_failed_fraction if allow_failed is None else allow_failed)
+    end_if_too_many_failed(dataset, settings.failures.max_failed_fraction if allow_failed is None else allow_failed)
 
 
 def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[str, Any]) -> Any:
@@ -112,10 +117,12 @@ def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[st
         end(str(error), STOPPED_EARLY)
 
 
-def _end_if_too_many_failed(dataset: Any, allowed: float) -> None:
-    from rfmpm.variables import FAILED, STATUS
+def end_if_too_many_failed(dataset: Any, allowed: float, where: str = "") -> None:
+    """End with an exit code if more than the allowed share of rows failed; `where` says of which campaign."""
+    from rfmpm.variables import FAILED_CODES
 
-    failed = int(dataset["status"].isin([STATUS[name] for name in FAILED]).sum())
+    failed = int(dataset["status"].isin(list(FAILED_CODES)).sum())
     total = dataset.sizes["realisation"]
     if failed > allowed * total:
-        end(f"{failed} of {total} realisations failed, more than the allowed {allowed:.3g} of them", TOO_MANY_FAILED)
+        share = f"more than the allowed {allowed:.3g} of them"
+        end(f"{where}{failed} of {total} realisations failed, {share}", TOO_MANY_FAILED)

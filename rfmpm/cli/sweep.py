@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY, end, is_first_rank
+from rfmpm.cli.run import end_if_too_many_failed
 
 FORM = "write --vary KEY=V1,V2,... or NAME:KEY=V1,V2,... or KEY1,KEY2=A1:B1,A2:B2,... for keys that change together"
 
@@ -42,6 +43,9 @@ def sweep(
     campaigns = _campaigns(grid, folder, workers)
     if campaigns and all(rows is not None for rows in campaigns.values()):  # other ranks than the first have none
         _write(folder, settings, axes, campaigns)
+        for cell in grid:
+            allowed = cell.study.failures.max_failed_fraction
+            end_if_too_many_failed(campaigns[cell.position], allowed, f"cell {cell.name}: ")
 
 
 def read_axis(text: str) -> Any:
@@ -88,7 +92,7 @@ def _campaigns(grid: list, folder: Path, workers: int | None) -> dict[tuple[int,
 
     try:
         return {cell.position: rows for cell, rows in run_cells(grid, folder, workers, tell)}
-    except (ensemble.FolderMismatch, ensemble.LauncherMismatch) as error:
+    except (ensemble.FolderMismatch, ensemble.LauncherMismatch, ensemble.RowsDiffer) as error:
         end(str(error), WRONG_STUDY)
     except ensemble.CampaignFailed as error:
         end(str(error), TOO_MANY_FAILED)

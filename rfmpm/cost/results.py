@@ -9,8 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rfmpm import report, results
+from rfmpm.campaign_status import now
 from rfmpm.ensemble import segments
 from rfmpm.mpm.scene import Scene
+from rfmpm.results.row_files import bin_positions
 
 
 class Size(NamedTuple):
@@ -46,10 +48,10 @@ def measure(study, scene: Scene, rows: list[dict[str, Any]], folder: Path) -> Fi
     segment = _size([_segment(study, many[:1], folder / "one"), _segment(study, many, folder / "many")], number)
     path = folder / results.ENSEMBLE_FILE
     started = time.process_time()
-    now = {name: time.strftime("%Y-%m-%dT%H:%M:%S+00:00") for name in ("start", "end")}
+    times = {name: now() for name in ("start", "end")}
     dataset = []
     for some in (many[:1], many):
-        results.write_dataset(path, results.dataset(some, study, now))
+        results.write_dataset(path, results.dataset(some, study, times))
         dataset.append(path.stat().st_size)
     (folder / "study.toml").write_text(study.to_toml(), encoding="utf-8")
     x, y = scene.points.position.x, scene.points.position.y
@@ -79,12 +81,9 @@ def _size(bytes_of_one_and_many: list[int], many: int) -> Size:
 
 def _fitted(rows: list[dict[str, Any]], study) -> list[dict[str, Any]]:
     """Rows whose surfaces have as many bins as the study's; other cells may round its length otherwise."""
-    from rfmpm.mpm.scene import domain_size
-    from rfmpm.quantities.surface import bin_centres
-
     if study.output.surface_bin_m is None:
         return rows
-    bins = len(bin_centres(domain_size(study)[0], study.output.surface_bin_m))
+    bins = len(bin_positions(study))
     return [row | {"final_surface": np.resize(row["final_surface"], bins)} for row in rows]
 
 

@@ -4,11 +4,9 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
-from rfmpm.variables import FAILED, STATUS
+from rfmpm.variables import FAILED_CODES, STATUS, STATUS_NAMES
 
-FAILED_CODES = frozenset(STATUS[name] for name in FAILED)
 FEWEST = 10  # failures that end a campaign early; fewer are judged when it is complete
-NAMES = {code: name for name, code in STATUS.items()}
 
 
 class CampaignFailed(RuntimeError):
@@ -54,7 +52,9 @@ class Books:
 
     def failures(self) -> dict[str, int]:
         """Count failed realisations, those of earlier runs included, by the name of their status."""
-        return {NAMES[code]: count for code, count in sorted(self.counts.items()) if code in FAILED_CODES and count}
+        return {
+            STATUS_NAMES[code]: count for code, count in sorted(self.counts.items()) if code in FAILED_CODES and count
+        }
 
     def why_not(self) -> str:
         """Say why the failure policy does not let the campaign go on; empty if it does."""

@@ -11,7 +11,7 @@ import numpy as np
 from rfmpm import campaign_status, results
 from rfmpm.ensemble import folder, segments
 from rfmpm.ensemble.board import Board
-from rfmpm.ensemble.books import FAILED_CODES, Books, CampaignFailed
+from rfmpm.ensemble.books import Books, CampaignFailed
 from rfmpm.ensemble.dispatcher import Dispatcher, Todo
 from rfmpm.ensemble.finished import NOTHING
 from rfmpm.ensemble.markers import take_left_behind
@@ -19,7 +19,7 @@ from rfmpm.ensemble.progress import Progress
 from rfmpm.ensemble.stop import Abandoned
 from rfmpm.ensemble.worker import ISOLATED_FROM, Worker
 from rfmpm.estimators.monte_carlo import MonteCarlo
-from rfmpm.variables import STATUS
+from rfmpm.variables import FAILED_CODES, STATUS
 
 log = logging.getLogger("rfmpm")
 

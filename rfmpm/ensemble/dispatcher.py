@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any
 
-from rfmpm.ensemble.books import FAILED_CODES, NAMES, Books
+from rfmpm.ensemble.books import Books
 from rfmpm.ensemble.markers import Task
 from rfmpm.ensemble.worker import Report
+from rfmpm.variables import FAILED_CODES, STATUS_NAMES
 
 
 class Todo:
@@ -97,19 +98,25 @@ class Dispatcher:
         if report.host:
             self.hosts[rank] = report.host
         for segment in report.segments:
-            self.journal.write("segment", rank=rank, **segment)
+            self._write("segment", rank=rank, **segment)
         if (ended := report.ended) is not None:
             self.books.enter(ended)
             self.longest = max(self.longest, ended.wall_time)
             if ended.status in FAILED_CODES:
-                status, at = NAMES[ended.status], ended.realisation
-                self.journal.write("failed", rank=rank, realisation=at, status=status, reason=ended.reason)
+                status, at = STATUS_NAMES[ended.status], ended.realisation
+                self._write("failed", rank=rank, realisation=at, status=status, reason=ended.reason)
         if report.error:
             self.losses.append(f"worker {rank} could not go on: {report.error}")
-            self.journal.write("worker_error", rank=rank, reason=report.error)
+            self._write("worker_error", rank=rank, reason=report.error)
             self.stop(self.losses[-1])
         if report.stopping:
             self.stop(report.stopping)
+
+    def _write(self, event: str, **details: Any) -> None:
+        try:
+            self.journal.write(event, **details)
+        except OSError as error:  # the workers are to end and to write what they have, not to be cut off
+            self.stop(f"the journal cannot be written: {error}")
 
     def _is_to_end(self) -> bool:
         self.verdict = self.verdict or self.books.why_not()
@@ -142,7 +149,7 @@ class Dispatcher:
             index = None if held is None else held.task.realisation
             at = "" if index is None else f" in realisation {index}"
             self.losses.append(f"worker {rank} died{at}: {reason}")
-            self.journal.write("worker_lost", rank=rank, realisation=index, reason=reason)
+            self._write("worker_lost", rank=rank, realisation=index, reason=reason)
             return held is not None and bool(self.todo) and not self.is_stopped
 
     def running(self) -> list[dict[str, Any]]:

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from rfmpm import results
-from rfmpm.variables import FAILED, STATUS
+from rfmpm.variables import BY_CHANCE, FAILED_CODES
 
 PLACES = np.dtype([("realisation", "i8"), ("segment", "i4"), ("row", "i4"), ("status", "i1")])
 
 
 class RowsDiffer(RuntimeError):
-    """Two rows of one realisation that are not the same, which no campaign can produce."""
+    """Two rows of one realisation that are not the same, though neither ended by chance: no campaign produces those."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Finished:
     @property
     def failed(self) -> int:
         """How many of them failed."""
-        return int(np.isin(self.status, [STATUS[name] for name in FAILED]).sum())
+        return int(np.isin(self.status, list(FAILED_CODES)).sum())
 
     def between(self, first: int, stop: int) -> np.ndarray:
         """Places of the finished realisations from `first` up to `stop`, sorted."""
@@ -66,7 +66,8 @@ NOTHING = Finished((), np.empty(0, PLACES))
 
 
 def one_each(segments: list[Segment], places: np.ndarray) -> np.ndarray:
-    """Sort by realisation and keep one row each: a whole one before another, then that of the segment found first.
+    """Sort by realisation and keep one row each: a whole one before another, then one that did not end by chance
+    before one that did (a crash, a time limit), then that of the segment found first.
 
     Args:
         segments: in which the rows lie.
@@ -76,14 +77,18 @@ def one_each(segments: list[Segment], places: np.ndarray) -> np.ndarray:
         Places sorted by realisation, shape (k,).
 
     Raises:
-        RowsDiffer: if two rows of one realisation are not the same.
+        RowsDiffer: if two rows of one realisation are not the same and neither ended by chance.
     """
     is_whole = np.array([segment.is_whole for segment in segments], bool)
-    places = places[np.lexsort((places["segment"], ~is_whole[places["segment"]], places["realisation"]))]
+    is_by_chance = np.isin(places["status"], list(BY_CHANCE))
+    order = np.lexsort((places["segment"], is_by_chance, ~is_whole[places["segment"]], places["realisation"]))
+    places, is_by_chance = places[order], is_by_chance[order]
     is_repeat = np.concatenate([[False], places["realisation"][1:] == places["realisation"][:-1]])[: len(places)]
     repeats = np.flatnonzero(is_repeat)
+    kept = np.flatnonzero(~is_repeat)[np.cumsum(~is_repeat)[repeats] - 1]
+    is_to_agree = ~(is_by_chance[kept] | is_by_chance[repeats])
+    kept, repeats = kept[is_to_agree], repeats[is_to_agree]
     if len(repeats):
-        kept = np.flatnonzero(~is_repeat)[np.cumsum(~is_repeat)[repeats] - 1]
         pairs, group = np.unique(places["segment"][[kept, repeats]], axis=1, return_inverse=True)
         order = np.argsort(group.ravel(), kind="stable")
         of_pairs = np.split(order, np.searchsorted(group.ravel()[order], np.arange(1, pairs.shape[1])))

@@ -1,14 +1,13 @@
 """The folder of a campaign: whose it is, what is thrown away in it, and the main log."""
 
 import logging
-import os
 import shutil
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
-from rfmpm.campaign_status import STATUS_FILE, STUDY_FILE, now
+from rfmpm.campaign_status import SEGMENTS, STATUS_FILE, STUDY_FILE, name_while_written, now, replace_text
 from rfmpm.ensemble.journal import JOURNAL_FILE, Journal
 from rfmpm.ensemble.lock import LOCK_FILE, InUse, locked
 from rfmpm.results import ENSEMBLE_FILE
@@ -19,7 +18,7 @@ log = logging.getLogger("rfmpm")
 
 LOG_FILE = "rfmpm.log"
 STOP_FILE = "STOP"
-SEGMENTS, QUARANTINE, WORK, RUNNING, LOGS = "segments", "quarantine", "work", "running", "logs"
+QUARANTINE, WORK, RUNNING, LOGS = "quarantine", "work", "running", "logs"
 RESULTS = (
     *(SEGMENTS, QUARANTINE, WORK, RUNNING, LOGS),
     *(ENSEMBLE_FILE, STATUS_FILE, "report.html", "report.json", "snapshots"),
@@ -31,7 +30,7 @@ class FolderMismatch(ValueError):
 
 
 @contextmanager
-def opened(directory: Path, study, fresh: bool) -> Iterator["Journal"]:
+def opened(directory: Path, study, fresh: bool) -> Iterator[Journal]:
     """Take a folder for a campaign: check whose it is before anything is changed, lock it, open log and journal.
 
     Args:
@@ -50,10 +49,11 @@ def opened(directory: Path, study, fresh: bool) -> Iterator["Journal"]:
         try:
             (directory / SEGMENTS).mkdir(parents=True, exist_ok=True)
             held.enter_context(locked(directory, now()))
+            check_owner(directory, study, fresh)  # again: a run that began at the same time may have ended since
             if fresh:
                 _discard(directory)
             _sweep(directory)
-            _replace_text(directory / STUDY_FILE, study.to_toml())
+            replace_text(directory / STUDY_FILE, study.to_toml())
             held.enter_context(_log_file(directory / LOG_FILE))
         except InUse as error:
             raise FolderMismatch(f"{directory}: another run is using this folder: {error}") from error
@@ -79,7 +79,7 @@ def check_owner(directory: Path, study, fresh: bool) -> None:
         raise FolderMismatch(f"{directory}: is not a folder")
     if not directory.is_dir() or not (names := {path.name for path in directory.iterdir()}):
         return
-    begun = {SEGMENTS, RUNNING, LOCK_FILE, STOP_FILE, _temporary(STUDY_FILE)}
+    begun = {SEGMENTS, RUNNING, LOCK_FILE, STOP_FILE, name_while_written(STUDY_FILE)}
     if names <= begun and not any(directory.glob(f"{SEGMENTS}/*")):
         return  # a run that was killed as it began
     try:
@@ -129,16 +129,6 @@ def _flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
             yield from _flat(inner, f"{path}.{key}" if path else str(key))
     else:
         yield path, value
-
-
-def _temporary(name: str) -> str:
-    return f".{name}.new"
-
-
-def _replace_text(path: Path, text: str) -> None:
-    temporary = path.with_name(_temporary(path.name))
-    temporary.write_text(text, encoding="utf-8")
-    os.replace(temporary, path)
 
 
 def _discard(directory: Path) -> None:

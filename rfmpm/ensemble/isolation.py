@@ -54,7 +54,8 @@ def run_apart(study, directory: Path, index: int) -> dict[str, Any]:
             time.sleep(DOUBT)
         finally:
             child.kill()
-            child.stdin.close()
+            with suppress(BrokenPipeError):  # of what a child that died at once has not taken
+                child.stdin.close()
     raise ChildDied(cause(child.returncode))
 
 

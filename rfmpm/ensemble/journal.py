@@ -2,6 +2,7 @@
 
 import json
 import logging
+import os
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -30,8 +31,13 @@ class Journal:
             event: its name.
             details: whatever belongs to it.
         """
-        with self.path.open("a", encoding="utf-8") as file:
-            file.write(json.dumps({"time": now(), "event": event, **details}) + "\n")
+        line = json.dumps({"time": now(), "event": event, **details}).encode()
+        with self.path.open("ab+") as file:
+            if file.tell():
+                file.seek(-1, os.SEEK_END)
+                if file.read() != b"\n":  # a line that a kill has torn does not take this one with it
+                    file.write(b"\n")
+            file.write(line + b"\n")
         log.info("%s %s", event, " ".join(f"{name}={value}" for name, value in details.items()))
 
     def events(self, *names: str) -> list[dict[str, Any]]:

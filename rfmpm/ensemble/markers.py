@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rfmpm.campaign_status import now
+from rfmpm.campaign_status import now, replace_text
 from rfmpm.ensemble.folder import RUNNING
 
 
@@ -41,9 +41,7 @@ class Marker:
             "host": platform.node(),
             "pid": os.getpid(),
         }
-        temporary = self.path.with_suffix(".new")
-        temporary.write_text(json.dumps(content), encoding="utf-8")
-        os.replace(temporary, self.path)
+        replace_text(self.path, json.dumps(content))
 
     def remove(self) -> None:
         """Say that nothing is being run any more."""

@@ -86,8 +86,9 @@ class Ranks:
             raise LauncherMismatch("this MPI library does not let a second thread communicate, which rank 0 needs")
         self.mpi, self.comm = MPI, MPI.COMM_WORLD.Dup()
         self.rank, self.size = self.comm.Get_rank(), found
-        self.size_here = self.comm.Split_type(MPI.COMM_TYPE_SHARED).Get_size()
-        self._has_started = False
+        here = self.comm.Split_type(MPI.COMM_TYPE_SHARED)
+        self.size_here = here.Get_size()
+        here.Free()
 
     def in_words(self) -> str:
         """Say who works, and what is wrong with their number."""
@@ -97,16 +98,16 @@ class Ranks:
         return ranks
 
     def follow(self, worker: Worker) -> None:
-        """Work under rank 0, if it finds that there is something to do; returns when rank 0 has closed the crew.
+        """Work under rank 0, as often as it finds something to do; returns when rank 0 has closed the crew.
 
         Args:
             worker: of this rank.
         """
         from rfmpm import realisation  # noqa: F401  (takes a second, in which rank 0 looks at the folder)
 
-        if self._receive(0, _START):
+        while self._receive(0, _START):
             worker.work(self.rank, self._claim)
-        self._meet()
+        self._part()
 
     def lead(self, worker: Worker, dispatcher: Dispatcher, renew: Callable[[], None]) -> None:
         """Let all ranks work, this one too, and serve them until the last one has ended.
@@ -129,12 +130,14 @@ class Ranks:
 
     def close(self) -> None:
         """Let the other ranks go; to be called by rank 0 in any case."""
-        if not self._has_started:
-            self._start(False)
+        self._start(False)
+        self._part()
+
+    def _part(self) -> None:
         self._meet()
+        self.comm.Free()  # MPI has room for some thousand of them only, and a sweep opens one for each cell
 
     def _start(self, is_to_work: bool) -> None:
-        self._has_started = True
         for rank in range(1, self.size):
             self._send(is_to_work, rank, _START)
 

@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from rfmpm import results
+from rfmpm.campaign_status import now
 from rfmpm.ensemble import folder, segments
 from rfmpm.ensemble.finished import NOTHING, Finished
+from rfmpm.ensemble.journal import JOURNAL_FILE, Journal
 from rfmpm.study import StudyError, load_study
 
 
@@ -74,10 +76,10 @@ def _study(part: Path):
 
 def _times(folders: Sequence[Path]) -> tuple[str, str]:
     """When the first of several campaigns started and when the last rows were written, ISO 8601."""
-    journals = [folder.Journal(path / folder.JOURNAL_FILE) for path in folders]
-    begun = [journal for journal in journals if any(event["event"] == "start" for event in journal.events())]
+    journals = [Journal(path / JOURNAL_FILE) for path in folders]
+    begun = [journal for journal in journals if journal.events("start")]
     if not begun:
-        return folder.now(), folder.now()
+        return now(), now()
     starts, ends = [journal.started() for journal in begun], [journal.ended() for journal in begun]
     return min(starts, key=datetime.fromisoformat), max(ends, key=datetime.fromisoformat)
 

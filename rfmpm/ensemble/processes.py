@@ -90,7 +90,8 @@ class Processes:
                 rank, process = members[connection]
                 try:
                     report = connection.recv()
-                    ended.add(rank) if report.is_last else None
+                    if report.is_last:
+                        ended.add(rank)
                     connection.send(dispatcher.answer(rank, report))
                 except (EOFError, OSError):
                     del members[connection]
@@ -103,7 +104,10 @@ class Processes:
                 signals_passed_on = worker.stop.count
                 dispatcher.stop(worker.stop.reason)
                 for _, process in members.values():
-                    process.terminate() if signals_passed_on == 1 else process.kill()
+                    if signals_passed_on == 1:
+                        process.terminate()
+                    else:
+                        process.kill()
 
 
 def _live(worker: Worker, rank: int, connection: Connection, inherited: list[Connection]) -> None:

@@ -57,8 +57,8 @@ def run(
     Raises:
         FolderMismatch: if the folder cannot take this campaign; nothing in it was changed.
         LauncherMismatch: if mpirun and the MPI library do not belong together.
-        Interrupted: if it ended early, by a signal, by its wall time because workers were lost or because something
-            could not be written.
+        Interrupted: if it ended early, by a signal, by its wall time, because workers were lost or because
+            something could not be written.
         CampaignFailed: if the failure policy of the study ended it.
         ValueError: for less than one realisation or worker, for workers under several MPI ranks, or for indices that
             the study does not have.

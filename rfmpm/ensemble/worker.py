@@ -13,11 +13,9 @@ from rfmpm.ensemble.isolation import ChildDied, run_apart
 from rfmpm.ensemble.markers import Marker, Task
 from rfmpm.ensemble.segments import Row, SegmentWriter
 from rfmpm.ensemble.stop import Abandoned, Stop
-from rfmpm.variables import STATUS, failed_row
+from rfmpm.variables import BY_CHANCE, STATUS_NAMES, failed_row
 
 ISOLATED_FROM = 3  # the start from which a realisation gets a process of its own
-REPEATABLE = frozenset({STATUS["crashed"], STATUS["timeout"]})  # may end otherwise the next time
-STATUS_NAMES = {code: name for name, code in STATUS.items()}
 
 log = logging.getLogger("rfmpm.worker")
 
@@ -100,12 +98,13 @@ class Worker:
                     self.prepare()
                     self._loop(writer, marker, claim)
             except Exception as failure:
-                error = _described(failure)
+                error = described(failure)
             try:
                 segments = writer.flush()
             except Exception as failure:
-                error = error or _described(failure)
-            marker.remove()
+                error = error or described(failure)
+            with suppress(OSError):  # the last report has to go out; a marker that stays counts as one start too many
+                marker.remove()
             claim(Report(segments=segments, is_last=True, stopping=self.stop.reason, error=error))
 
     def _loop(self, writer: SegmentWriter, marker: Marker, claim: Claim) -> None:
@@ -147,7 +146,7 @@ class Worker:
         times = 1 + (policy.retries if policy.action == "retry" else 0)
         for repetition in range(1, times + 1):
             row = self._attempt(index)
-            if row["status"] not in REPEATABLE:
+            if row["status"] not in BY_CHANCE:
                 return row
             log.warning("realisation %d, try %d of %d: %s", index, repetition, times, row["status_reason"])
         return row if times == 1 else {**row, "status_reason": f"{row['status_reason']}; tried {times} times"}
@@ -159,7 +158,7 @@ class Worker:
         try:
             return realisation.run(self.prepared, index, watch=self.stop.abandon_if_requested)
         except Exception as failure:
-            return failed_row(self.study, index, "crashed", _described(failure), wall_time=_since(started))
+            return failed_row(self.study, index, "crashed", described(failure), wall_time=_since(started))
 
     @contextmanager
     def _log_of(self, rank: int) -> Iterator[None]:
@@ -190,5 +189,6 @@ def _since(started: float) -> float:
     return time.perf_counter() - started
 
 
-def _described(failure: Exception) -> str:
+def described(failure: Exception) -> str:
+    """Say in one line what a realisation or a worker raised."""
     return " ".join(f"{type(failure).__name__}: {failure}".split())

@@ -149,10 +149,6 @@ def open_ensemble(source: Path | str) -> "xr.Dataset":
     path = path / ENSEMBLE_FILE if path.is_dir() else path
     if not path.is_file():
         raise FileNotFoundError(f"{path}: no such file; has the campaign been completed?")
-    return _open(path)
-
-
-def _open(path: Path) -> "xr.Dataset":
     import xarray as xr
 
     with xr.open_dataset(path, engine="netcdf4", decode_times=False, decode_timedelta=False) as stored:

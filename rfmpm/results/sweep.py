@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rfmpm import estimators
-from rfmpm.variables import FAILED, STATUS
+from rfmpm.variables import FAILED_CODES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,7 +46,7 @@ def sweep_dataset(axes: Sequence[Any], campaigns: Mapping[tuple[int, ...], "xr.D
     data = {}
     for name, variable in first.data_vars.items():
         parts = {position: rows[name] for position, rows in campaigns.items()}
-        if any(part.shape != variable.shape for part in parts.values()):
+        if any(part.shape != variable.shape or not _has_same_bins(part, variable) for part in parts.values()):
             continue
         whole = np.empty((*shape, *variable.shape), variable.dtype)
         for position, part in parts.items():
@@ -60,6 +60,10 @@ def sweep_dataset(axes: Sequence[Any], campaigns: Mapping[tuple[int, ...], "xr.D
     coordinates = {name: first.coords[name] for name in first.coords if any(name in v.dims for v in data.values())}
     summary = _summary(names, shape, campaigns, limit)
     return xr.Dataset(data | summary, _coordinates(axes) | coordinates, attributes)
+
+
+def _has_same_bins(part: Any, variable: Any) -> bool:
+    return "x" not in variable.dims or np.array_equal(part["x"].values, variable["x"].values)
 
 
 def _encoding(variable: Any) -> dict[str, Any]:
@@ -85,7 +89,6 @@ def _coordinates(axes: Sequence[Any]) -> dict[str, Any]:
 
 
 def _summary(names, shape, campaigns: Mapping[tuple[int, ...], "xr.Dataset"], limit: float) -> dict[str, Any]:
-    failed_codes = [STATUS[name] for name in FAILED]
     columns = {f"{name}{end}": np.full(shape, np.nan) for name in SUMMARY for end in ("", "_lower", "_upper")}
     failed = np.zeros(shape, "int32")
     for position, rows in campaigns.items():
@@ -98,7 +101,7 @@ def _summary(names, shape, campaigns: Mapping[tuple[int, ...], "xr.Dataset"], li
             columns[name][position] = estimate.value
             columns[f"{name}_lower"][position] = estimate.lower
             columns[f"{name}_upper"][position] = estimate.upper
-        failed[position] = int(rows["status"].isin(failed_codes).sum())
+        failed[position] = int(rows["status"].isin(list(FAILED_CODES)).sum())
     ends = {"_lower": ", lower end of its 95 % interval", "_upper": ", upper end of its 95 % interval"}
     found = {}
     for name, values in columns.items():

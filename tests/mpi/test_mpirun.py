@@ -15,7 +15,7 @@ from rfmpm import campaign_status, results
 from rfmpm.variables import STATUS
 
 CAMPAIGN = Path(__file__).parents[1] / "robustness" / "campaign.py"
-DEADLY = CAMPAIGN.with_name("deadly")
+DEADLY, TORN = CAMPAIGN.with_name("deadly"), CAMPAIGN.with_name("torn")
 MPIRUN = Path(sys.executable).with_name("mpirun")
 REALISATIONS = "40"
 LONGEST = 120.0  # seconds; a guard against hanging, not a measure
@@ -94,6 +94,14 @@ def test_rank_that_dies_costs_a_start_and_the_third_is_made_apart(tmp_path, loca
     others = np.arange(int(REALISATIONS)) != 7
     expected = results.open_ensemble(tmp_path / "undisturbed")
     np.testing.assert_array_equal(found["run_out"].values[others], expected["run_out"].values[others])
+
+
+def test_rows_of_a_damaged_segment_run_again_before_the_campaign_ends(tmp_path, local_hash):
+    command = [str(MPIRUN), "-n", "3", sys.executable, str(CAMPAIGN), str(tmp_path), REALISATIONS, "", "0.02"]
+    done = call(*command, TORN="0", PYTHONPATH=os.pathsep.join([str(TORN), os.environ.get("PYTHONPATH", "")]))
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == local_hash
+    assert len(list((tmp_path / "quarantine").iterdir())) == 1
 
 
 def start(directory: Path, *more: str) -> subprocess.Popen:

@@ -196,6 +196,7 @@ def test_allowed_share_of_failed_ones_is_the_study_s_unless_given(campaign, tmp_
         ("5:30:00", 19800.0),
         ("30:00", 1800.0),
         ("1-12:00:00", 129600.0),
+        ("1-12:00", 129600.0),
         ("0", None),
         ("-5", None),
         ("soon", None),

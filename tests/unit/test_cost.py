@@ -35,7 +35,7 @@ def test_makespan(mean, longest, count, workers, expected):
 
 
 def test_makespan_is_that_of_schedules():
-    # Half a realisation at the end is a rule of thumb: within a fifth of the longest one.
+    # Half a realisation at the end is the mean over schedules, of which each has between nothing and a whole one.
     rng = np.random.default_rng(3)
     for workers in (4, 16):
         seconds = rng.uniform(0.5, 2.0, 40 * workers)

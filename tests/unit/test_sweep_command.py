@@ -64,6 +64,14 @@ def test_picture_before_the_table_and_a_dataset(tmp_path):
     assert dataset.sizes["coefficient_of_variation"] == dataset.sizes["realisation"] == 2
 
 
+def test_a_cell_in_which_too_many_failed_is_exit_code_3_and_the_rest_is_written(tmp_path):
+    limits = ["--vary", "failures.realisation_time_limit_s=1e-9,1e9"]
+    result = call(*limits, "--realisations", 2, "--workers", 1, "--out", tmp_path)
+    assert result.exit_code == 3, result.output
+    assert "cell realisation_time_limit_s=1e-09: 2 of 2 realisations failed" in result.stderr
+    assert results.open_ensemble(tmp_path / "sweep.nc")["failed_count"].values.tolist() == [2, 0]
+
+
 @pytest.mark.slow
 def test_killed_it_goes_on_and_loses_nothing(tmp_path):
     def command(folder: Path) -> list[str]:

@@ -88,7 +88,7 @@ def flood(folder: Path, claims: int) -> None:
         crew._serve(dispatcher, lambda: None)
         print((time.perf_counter() - started) / claims)
         return
-    segment = [{"segment": "00001-00001-00001-00000000.nc", "realisations": list(range(ROWS_PER_SEGMENT))}]
+    segment = [{"segment": "00001-1-00001-0123456789abcdef.rows", "realisations": list(range(ROWS_PER_SEGMENT))}]
     ended = [Ended(index, STATUS["ok"], "", 0.0) for index in range(claims)]
     reports = [Report(end, segments=[] if end.realisation % ROWS_PER_SEGMENT else segment) for end in ended]
     crew._meet()

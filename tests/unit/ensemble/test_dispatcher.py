@@ -57,6 +57,18 @@ def test_hands_out_in_order_with_the_number_of_the_start_and_counts(desk, shown)
     assert desk.books.failures() == {"diverged": 1}
 
 
+def test_a_journal_that_cannot_be_written_ends_the_run_and_keeps_the_books(desk, monkeypatch):
+    def fail(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Notes, "write", fail)
+    assert desk.answer(0, Report()) == Task(4, 1)
+    assert desk.answer(0, after(4, "diverged")) is None
+    assert desk.books.failures() == {"diverged": 1}
+    assert "the journal cannot be written: [Errno 28]" in desk.stopped_by
+    assert not desk.lost(1, "killed")
+
+
 def test_todo_is_held_as_ranges():
     todo = Todo([range(3), range(5, 10**7)])
     assert [todo.take() for _ in range(5)] == [0, 1, 2, 5, 6]

@@ -115,6 +115,15 @@ def test_many_repeated_rows_are_compared_each_with_its_own(study, scattered):
         segments.finished(scattered, study, None)
 
 
+@pytest.mark.parametrize("name", ["timeout", "crashed"])
+def test_a_row_that_ended_by_chance_gives_way_to_one_that_did_not(study, tmp_path, name):
+    write(study, tmp_path, [0, 1], "00000-1-00000", status=STATUS[name])
+    write(study, tmp_path, [1, 2], "00001-1-00000", status=STATUS["ok"], run_out=3.0)
+    found = segments.finished(tmp_path, study, None)
+    assert found.status.tolist() == [STATUS[name], STATUS["ok"], STATUS["ok"]]
+    assert merge(study, tmp_path, 3)["run_out"].values.tolist() == [0.0, 3.0, 3.0]
+
+
 def test_without_a_journal_a_damaged_segment_stays_where_it_is(study, scattered, caplog):
     (damaged,) = scattered.glob("segments/00000-*")
     damaged.write_bytes(b"torn")

@@ -27,5 +27,13 @@ def test_a_campaign_ended_when_its_last_rows_were_written_and_not_when_it_was_as
     assert journal.ended() == json.loads(journal.path.read_text().splitlines()[2])["time"]
 
 
+def test_a_line_after_a_torn_one_is_read(tmp_path):
+    journal = Journal(tmp_path / "journal.jsonl")
+    journal.path.write_text('{"event": "sta')
+    journal.write("start")
+    journal.write("segment")
+    assert [event["event"] for event in journal.events()] == ["start", "segment"]
+
+
 def test_journal_without_a_file_is_empty(tmp_path):
     assert Journal(tmp_path / "journal.jsonl").events() == []

@@ -6,6 +6,7 @@ from rfmpm import ensemble, results
 from rfmpm.ensemble import sweep
 from rfmpm.ensemble.sweep import Axis, cells, run_cells
 from rfmpm.study import StudyError
+from rfmpm.variables import failed_row
 
 VARIATION = "random_field.cohesion.coefficient_of_variation"
 SCALES = ("random_field.cohesion.scale_of_fluctuation_v_m", "random_field.cohesion.scale_of_fluctuation_h_m")
@@ -75,6 +76,15 @@ def test_a_sweep_goes_on_where_it_was(small, tmp_path, monkeypatch):
         assert float(cell["exceedance_probability"]) == float((rows["run_out"] > 1.0).mean())
     results.write_dataset(tmp_path / "sweep.nc", dataset)
     assert results.open_ensemble(tmp_path / "sweep.nc")["status"].shape == (2, 2, 3)
+
+
+@pytest.mark.parametrize(("stretch", "is_there"), [(1.0, True), (1.01, False)])
+def test_surfaces_are_kept_only_where_all_cells_have_the_same_bins(small, stretch, is_there):
+    width = small.with_changes({"output.surface_bin_m": 1.0})
+    rows = results.dataset([failed_row(width, 0, "diverged", "")], width)
+    cells_rows = {(0,): rows, (1,): rows.assign_coords(x=stretch * rows["x"])}
+    axes = [Axis("bin", ("output.surface_bin_m",), ((1.0,), (stretch,)))]
+    assert ("final_surface" in results.sweep_dataset(axes, cells_rows, limit=1.0)) == is_there
 
 
 @pytest.mark.parametrize(
