@@ -37,6 +37,8 @@ def status(
 
 def _lines(directory: Path, found: Mapping[str, Any]) -> Iterator[str]:
     workers = f"{found['workers']} worker{'s' if found['workers'] != 1 else ''}, rank 0 on {found['host']}"
+    if not found["workers"]:
+        workers = f"put together from parts on {found['host']}"
     yield f"{directory}: {found['state']} ({workers}, started {found['started']})"
     if found["doubt"]:
         yield f"doubt    {found['doubt']}"
