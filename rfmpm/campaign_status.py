@@ -87,7 +87,7 @@ def _is_alive(pid: Any) -> bool:
     return True
 
 
-def estimate_so_far(directory: Path, first: int = 0) -> dict[str, Any] | None:
+def estimate_so_far(directory: Path, first: int = 0, total: int | None = None) -> dict[str, Any] | None:
     """Estimate P(run-out > limit) from what is finished without a gap in the indices.
 
     What is finished beyond a gap was finished because it was quick, and is no fair sample.
@@ -95,9 +95,11 @@ def estimate_so_far(directory: Path, first: int = 0) -> dict[str, Any] | None:
     Args:
         directory: of the campaign.
         first: index at which it begins.
+        total: how many realisations it asks for; those that the folder has beyond them do not count.
 
     Returns:
-        limit_m, value, lower, upper, confidence and n; None if nothing is finished without a gap.
+        limit_m, value (None where every one failed), lower, upper, confidence and n; None if nothing is finished
+        without a gap.
     """
     directory = Path(directory)
     paths = sorted((directory / SEGMENTS).glob("*.rows"))
@@ -108,15 +110,16 @@ def estimate_so_far(directory: Path, first: int = 0) -> dict[str, Any] | None:
     index, run_out, censored = (np.concatenate(parts) for parts in zip(*columns, strict=True))
     index, place = np.unique(index, return_index=True)
     index, place = index[index >= first], place[index >= first]
-    n = int(np.sum(index == first + np.arange(index.size)))
+    n = int(np.sum(index[:total] == first + np.arange(index[:total].size)))
     if n == 0:
         return None
     from rfmpm.estimators import exceedance
 
     limit = float(tomllib.loads((directory / STUDY_FILE).read_text("utf-8"))["quantities"]["run_out_limit_m"])
     found = exceedance(run_out[place][:n], limit, censored[place][:n])
-    names = ("value", "lower", "upper", "confidence", "n")
-    return {"limit_m": limit, **{name: getattr(found, name) for name in names}}
+    names = ("lower", "upper", "confidence", "n")
+    value = None if np.isnan(found.value) else found.value  # JSON has no NaN
+    return {"limit_m": limit, "value": value, **{name: getattr(found, name) for name in names}}
 
 
 def _columns(paths: Iterable[Path]) -> Iterator[tuple]:

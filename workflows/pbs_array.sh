@@ -4,8 +4,8 @@
 #     qsub workflows/pbs_array.sh
 #
 # A job whose walltime is nearly over ends with exit code 75 and submits itself once more, alone; the last one to finish
-# merges the parts. To end it for good: touch DIR/STOP. Not tried under PBS: none could be installed; its body was run
-# by hand.
+# merges the parts. To end it for good: touch DIR/STOP, and qdel what runs or waits. Not tried under PBS: none could be
+# installed; its body was run by hand.
 
 # ==== EDIT 1: resources; PARTS as many as in -J, TIME_TO_RUN a few minutes less than walltime ====
 #PBS -N rfmpm

@@ -4,8 +4,8 @@
 #     qsub workflows/pbs_mpi.sh
 #
 # Some minutes before its walltime rfmpm writes what is finished and ends with exit code 75, and the script submits
-# itself once more. To end it for good: touch DIR/STOP. Not tried under PBS: none could be installed; its body was run
-# by hand.
+# itself once more. To end it for good: touch DIR/STOP while it runs, qdel it while it waits (a run that starts removes
+# an old STOP). Not tried under PBS: none could be installed; its body was run by hand.
 
 # ==== EDIT 1: resources; TIME_TO_RUN a few minutes less than walltime ====
 #PBS -N rfmpm

@@ -4,8 +4,8 @@
 #     sbatch workflows/slurm_mpi.sh
 #
 # Two minutes before its time is over Slurm sends SIGUSR1; rfmpm writes what is finished and ends with exit code 75, and
-# the script goes back into the queue. To end it for good: scancel JOB, or touch DIR/STOP. Tried with Slurm 22.05 and
-# MPICH, on one machine.
+# the script goes back into the queue. To end it for good: scancel JOB, or touch DIR/STOP while it runs. Tried with
+# Slurm 22.05 and MPICH, on one machine.
 
 # ==== EDIT 1: resources ====
 #SBATCH --job-name=rfmpm

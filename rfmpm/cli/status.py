@@ -25,7 +25,7 @@ def status(
         end(f"{directory}: no {campaign_status.STATUS_FILE} here; is it the folder of a campaign?", WRONG_STUDY)
     except ValueError as error:
         end(str(error), WRONG_STUDY)
-    found["estimate"] = campaign_status.estimate_so_far(directory, found["first"])
+    found["estimate"] = campaign_status.estimate_so_far(directory, found["first"], found["total"])
     if as_json:
         import json
 
@@ -37,6 +37,8 @@ def status(
 
 def _lines(directory: Path, found: Mapping[str, Any]) -> Iterator[str]:
     workers = f"{found['workers']} worker{'s' if found['workers'] != 1 else ''}, rank 0 on {found['host']}"
+    if not found["workers"]:
+        workers = f"put together from parts on {found['host']}"
     yield f"{directory}: {found['state']} ({workers}, started {found['started']})"
     if found["doubt"]:
         yield f"doubt    {found['doubt']}"
@@ -59,7 +61,8 @@ def _lines(directory: Path, found: Mapping[str, Any]) -> Iterator[str]:
 
 def _estimate(found: Mapping[str, Any] | None) -> str:
     if found is None:
-        return "none yet: no realisations finished without a gap"
+        return "none yet: no finished realisations on disk without a gap"
     interval = f"{100.0 * found['confidence']:.0f} % interval {found['lower']:.3g} to {found['upper']:.3g}"
     basis = f"the first {found['n']} realisations, finished without a gap"
-    return f"P(run-out > {found['limit_m']:g} m) = {found['value']:.3g}, {interval}, from {basis}"
+    value = "unknown" if found["value"] is None else f"= {found['value']:.3g}"
+    return f"P(run-out > {found['limit_m']:g} m) {value}, {interval}, from {basis}"

@@ -54,7 +54,11 @@ class Campaign:
 
     def _look(self) -> None:
         """Find out what the folder holds."""
+        put_aside = len(self.journal.events("quarantine"))
         self.found = segments.finished(self.directory, self.study, self.journal, self.found)
+        for event in self.journal.events("quarantine")[put_aside:]:
+            where = f"{self.directory / folder.QUARANTINE}; its realisations run again"
+            self._say(f"{event['segment']} is not valid and was moved to {where}")
         plan = MonteCarlo(self.asked.stop).plan(self.found.indices)
         missing = (range(max(part.start, self.asked.start), part.stop) for part in plan)
         self.todo = Todo(part for part in missing if part)

@@ -123,6 +123,8 @@ class Dispatcher:
         if time.monotonic() + self.longest >= self.deadline:
             self.stop(
                 f"what is left of --wall-time is shorter than the longest realisation so far, {self.longest:.3g} s"
+                if self.longest
+                else "the limit of --wall-time was reached before a realisation was finished; it is too short"
             )
         return self.is_stopped
 

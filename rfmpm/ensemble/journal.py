@@ -70,8 +70,12 @@ class Journal:
 
     def ended(self) -> str:
         """When the last rows were written, ISO 8601."""
-        written = self.events("segment")
-        return written[-1]["time"] if written else self.started()
+        written = [
+            event.get("end", event["time"])
+            for event in self.events("segment", "start")
+            if event["event"] == "segment" or "end" in event
+        ]
+        return written[-1] if written else self.started()
 
     def unfinished_starts(self) -> Counter[int]:
         """Count, for each realisation, the starts that came to no end because the worker, or the whole job, died."""

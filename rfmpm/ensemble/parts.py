@@ -1,5 +1,8 @@
 """Puts together the campaign of one study that was run in parts, in several folders or on several machines."""
 
+import os
+import platform
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -7,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from rfmpm import results
+from rfmpm import campaign_status, results
 from rfmpm.campaign_status import now
 from rfmpm.ensemble import folder, segments
+from rfmpm.ensemble.books import Books
 from rfmpm.ensemble.finished import NOTHING, Finished
 from rfmpm.ensemble.journal import JOURNAL_FILE, Journal
 from rfmpm.study import StudyError, load_study
@@ -61,9 +65,10 @@ def merge_parts(parts: Sequence[Path], out: Path) -> Whole:
             results.copy_rows(segment.path, out / folder.SEGMENTS)
         start, end = _times([*parts, out])
         missing = np.setdiff1d(np.arange(study.study.realisations), found.indices)
-        journal.write("start", time=start, parts=[str(part) for part in parts], missing=len(missing))
+        journal.write("start", time=start, end=end, parts=[str(part) for part in parts], missing=len(missing))
         if not len(missing):
             _finish(out, study, journal, found, {"start": start, "end": end})
+        _post(out, study.study.realisations, found, start)
     return Whole(study.study.realisations, missing)
 
 
@@ -88,6 +93,17 @@ def _finish(out: Path, study, journal, found: Finished, times: dict[str, str]) -
     path, total = out / results.ENSEMBLE_FILE, study.study.realisations
     content_hash = segments.merge(out, study, journal, total, path, times, known=found)
     journal.write("stop", complete=True, content_hash=content_hash)
+
+
+def _post(out: Path, total: int, found: Finished, start: str) -> None:
+    """Let status.json say what the parts came to."""
+    books = Books(total, dict(Counter(found.status.tolist())), "record", 1.0)
+    state = campaign_status.COMPLETE if books.before == total else campaign_status.STOPPED
+    reason = "" if books.before == total else f"{total - books.before} realisations are in none of the parts"
+    counts = {"first": 0, "total": total, "done": books.before, "failed": books.failures(), "workers": 0}
+    rest = {"running": [], "rate_per_minute": 0.0, "seconds_left": None, "host": platform.node(), "pid": os.getpid()}
+    when = {"started": start, "updated": campaign_status.now()}
+    campaign_status.write(out, {"state": state, "reason": reason, **counts, **rest, **when})
 
 
 def ranges(indices: np.ndarray) -> list[str]:

@@ -109,3 +109,11 @@ def test_damaged_segment_is_put_aside_and_its_rows_run_again(study, tmp_path, da
     assert not segment.exists()
     assert f'"quarantine", "segment": "{segment.name}"' in (tmp_path / "journal.jsonl").read_text()
     assert segment.name in (tmp_path / "rfmpm.log").read_text()
+
+
+def test_a_segment_that_is_put_aside_is_said(study, tmp_path, capsys):
+    run(study, tmp_path)
+    segment, *_ = (tmp_path / "segments").glob("*.rows")
+    segment.write_bytes(b"")
+    ensemble.run(study, tmp_path, workers=1)
+    assert f"rfmpm: {segment.name} is not valid and was moved to {tmp_path / 'quarantine'}" in capsys.readouterr().err

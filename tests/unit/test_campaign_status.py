@@ -109,3 +109,14 @@ def test_part_of_a_study_has_its_estimate_too(tmp_path, study):
     segment(tmp_path, study, "a", row(study, 1, 9.0), row(study, 4, 9.0), row(study, 5, 1.0), row(study, 7, 9.0))
     found = campaign_status.estimate_so_far(tmp_path, first=4)
     assert (found["n"], found["value"]) == (2, 0.5)
+
+
+def test_rows_beyond_what_is_asked_for_do_not_count(tmp_path, study):
+    segment(tmp_path, study, "a", *(row(study, index, 9.0) for index in range(6)))
+    assert campaign_status.estimate_so_far(tmp_path, first=1, total=2)["n"] == 2
+
+
+def test_where_every_one_failed_the_value_is_none_which_json_can_say(tmp_path, study):
+    segment(tmp_path, study, "a", row(study, 0, None))
+    found = campaign_status.estimate_so_far(tmp_path)
+    assert (found["value"], found["lower"], found["upper"]) == (None, 0.0, 1.0)

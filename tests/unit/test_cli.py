@@ -260,7 +260,7 @@ def test_status_of_a_stopped_campaign(tmp_path):
         "reason   the limit of --wall-time was reached",
         "done     120 of 400 realisations",
         "failed   1 crashed, 2 diverged",
-        "estimate none yet: no realisations finished without a gap",
+        "estimate none yet: no finished realisations on disk without a gap",
     ]
 
 

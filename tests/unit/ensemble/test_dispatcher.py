@@ -134,6 +134,12 @@ def test_nothing_is_handed_out_that_would_outlast_the_deadline(notes, shown, clo
     assert "longest realisation so far, 60 s" in desk.stopped_by
 
 
+def test_a_wall_time_that_is_over_before_anything_is_finished_is_called_too_short(notes, shown, clock):
+    desk = make(notes, shown, deadline=-1.0)
+    assert desk.answer(0, Report()) is None
+    assert "too short" in desk.stopped_by
+
+
 def test_running_lists_what_is_at_hand(desk, clock):
     desk.answer(0, Report(host="node1"))
     clock[0] += 5.0

@@ -6,7 +6,7 @@ import shutil
 import numpy as np
 import pytest
 
-from rfmpm import ensemble, results
+from rfmpm import campaign_status, ensemble, results
 from rfmpm.ensemble.parts import merge_parts, ranges
 from rfmpm.study import load_study
 
@@ -67,6 +67,19 @@ def test_what_is_missing_is_named_and_run_by_the_next_run(study, whole, parts, t
     assert results.content_hash(run(study, out)) == results.content_hash(whole)
     starts = [json.loads(line) for line in (out / "journal.jsonl").read_text().splitlines()]
     assert [event["todo"] for event in starts if "todo" in event] == [3]
+
+
+def test_status_and_times_of_the_whole_are_those_of_the_parts(study, parts, tmp_path):
+    merge_parts(parts[:2], parts[0])
+    found = campaign_status.read(parts[0])
+    assert (found["state"], found["done"], found["total"]) == ("stopped", 6, TOTAL)
+    merge_parts(parts, parts[0])
+    found = campaign_status.read(parts[0])
+    assert (found["state"], found["done"], found["failed"]) == ("complete", TOTAL, {})
+    before = results.open_ensemble(parts[0]).attrs
+    after = run(study, parts[0]).attrs  # nothing is left to do
+    assert (after["start"], after["end"]) == (before["start"], before["end"])
+    assert after["end"] > after["start"]
 
 
 def test_a_folder_takes_the_parts_that_it_lacks(whole, parts, tmp_path):
