@@ -29,8 +29,14 @@ export OMP_NUM_THREADS=1 NUMBA_NUM_THREADS=1
 mpirun -n "$(wc -l <"$PBS_NODEFILE")" rfmpm run "$STUDY" --out "$DIR" --wall-time "$TIME_TO_RUN"
 code=$?
 
-if [ "$code" -eq 75 ] && [ ! -e "$DIR/STOP" ]; then
-    qsub "$SCRIPT" || exit "$code"
+again=no
+case $code in
+75) again=yes ;;
+0 | 2 | 3) ;;
+*) [ "${TRIES:-0}" -lt 20 ] && again=yes ;; # a rank died; its realisation is set aside at the third death
+esac
+if [ "$again" = yes ] && [ ! -e "$DIR/STOP" ]; then
+    qsub -v TRIES=$((${TRIES:-0} + 1)) "$SCRIPT" || exit "$code"
     exit 0
 fi
 exit "$code"

@@ -32,6 +32,8 @@ part=$((SLURM_ARRAY_TASK_ID - SLURM_ARRAY_TASK_MIN))
 first=$((part * REALISATIONS / parts))
 end=$(((part + 1) * REALISATIONS / parts))
 
+segments() { find "$DIR/part-$part/segments" -name '*.rows' 2>/dev/null | wc -l; }
+before=$(segments)
 rfmpm run "$STUDY" --realisations "$REALISATIONS" --indices "$first:$end" --out "$DIR/part-$part" \
     --workers "$SLURM_CPUS_PER_TASK" &
 campaign=$!
@@ -44,7 +46,9 @@ while true; do # a signal ends a wait before the campaign has ended
     kill -0 "$campaign" 2>/dev/null || break
 done
 
-if [ "$code" -eq 75 ] && [ "$cancelled" = no ]; then
+if [ "$code" -eq 75 ] && [ "$(segments)" -eq "$before" ]; then
+    echo "nothing was finished in this time: ask for more" >&2
+elif [ "$code" -eq 75 ] && [ "$cancelled" = no ]; then
     scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
     sleep 60 # Slurm ends this run of the job
     exit "$code"

@@ -28,6 +28,8 @@ export PATH="$PWD/.venv/bin:$PATH"
 set -u
 export OMP_NUM_THREADS=1 NUMBA_NUM_THREADS=1
 
+segments() { find "$DIR/segments" -name '*.rows' 2>/dev/null | wc -l; }
+before=$(segments)
 mpirun -n "$SLURM_NTASKS" rfmpm run "$STUDY" --out "$DIR" &
 campaign=$!
 cancelled=no
@@ -39,7 +41,13 @@ while true; do # a signal ends a wait before the campaign has ended
     kill -0 "$campaign" 2>/dev/null || break
 done
 
-if [ "$code" -eq 75 ] && [ "$cancelled" = no ] && [ ! -e "$DIR/STOP" ]; then
+again=no
+case $code in
+75) if [ "$(segments)" -gt "$before" ]; then again=yes; else echo "nothing was finished in this time: ask for more" >&2; fi ;;
+0 | 2 | 3) ;;
+*) [ "${SLURM_RESTART_COUNT:-0}" -lt 20 ] && again=yes ;; # a rank died; its realisation is set aside at the third death
+esac
+if [ "$again" = yes ] && [ "$cancelled" = no ] && [ ! -e "$DIR/STOP" ]; then
     scontrol requeue "$SLURM_JOB_ID"
     sleep 60 # Slurm ends this run of the job
 fi

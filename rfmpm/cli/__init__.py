@@ -197,7 +197,13 @@ def estimate(
 
     settings = load_study(study)
     from rfmpm import cost
+    from rfmpm.ensemble.mpi import launched_ranks
 
+    if (launched_ranks() or 1) > 1:
+        end(
+            "estimate: ranks that run its trials at once disturb each other; leave mpirun out, say --ranks N",
+            WRONG_STUDY,
+        )
     print_table(cost_row(key, value) for key, value in cost.estimate(settings, ranks).items())
 
 

@@ -65,6 +65,9 @@ def run(
             "batch system does.",
         ),
     ] = None,
+    repeat_failed: Annotated[
+        bool, typer.Option("--repeat-failed", help="Run once more what a crash or a time limit ended.")
+    ] = False,
     log_level: Annotated[
         Literal["debug", "info", "warning", "error"],
         typer.Option(help="Of the logs of the workers, DIR/logs/rank-*.log; info: a line for each realisation."),
@@ -85,6 +88,7 @@ def run(
         "allow_failed": allow_failed,
         "wall_time": wall_time,
         "log_level": log_level,
+        "repeat_failed": repeat_failed,
     }
     dataset = _campaign(settings, folder, workers, options)
     if dataset is None:
@@ -113,6 +117,8 @@ def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[st
         end(str(error), WRONG_STUDY)
     except ensemble.CampaignFailed as error:
         end(str(error), TOO_MANY_FAILED)
+    except ensemble.TooShort as error:
+        end(str(error), WRONG_STUDY)
     except ensemble.Interrupted as error:
         end(str(error), STOPPED_EARLY)
 

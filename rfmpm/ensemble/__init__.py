@@ -1,7 +1,7 @@
 """The runner: carries out a campaign over processes or MPI ranks, resumes it, and keeps failures as rows."""
 
 from rfmpm.ensemble.books import CampaignFailed
-from rfmpm.ensemble.campaign import Interrupted
+from rfmpm.ensemble.campaign import Interrupted, TooShort
 from rfmpm.ensemble.finished import RowsDiffer
 from rfmpm.ensemble.folder import FolderMismatch
 from rfmpm.ensemble.mpi import LauncherMismatch
@@ -15,6 +15,7 @@ __all__ = [
     "Interrupted",
     "LauncherMismatch",
     "RowsDiffer",
+    "TooShort",
     "find_row",
     "merge_parts",
     "run",

@@ -62,16 +62,18 @@ class Books:
         failed = sum(failures.values())
         if failed and self.action == "abort":
             return (
-                f'{self._example(next(iter(failures)))}, and failures.action = "abort"; mend what made it fail, or set '
-                'failures.action to "record" or "retry" and run the same command again'
+                f'{self._example(next(iter(failures)))}, and failures.action = "abort"; mend what made it fail and run '
+                "it once more (--repeat-failed, where a crash or a time limit ended it), or set failures.action to "
+                '"record" or "retry" and run the same command again'
             )
         if failed > max(self.allowed * self.total, FEWEST - 1):
             commonest = max(failures, key=failures.__getitem__)
             return (
                 f"{failed} of {self.total} realisations have failed, more than the allowed {self.allowed:.3g} of them "
                 f"({', '.join(f'{count} {name}' for name, count in failures.items())}); most often: "
-                f"{self._example(commonest)}; mend what made them fail, or raise failures.max_failed_fraction or "
-                "--allow-failed and run the same command again to continue"
+                f"{self._example(commonest)}; mend what made them fail and run them once more (--repeat-failed, where "
+                "crashes or a time limit ended them), or raise failures.max_failed_fraction or --allow-failed and run "
+                "the same command again to continue"
             )
         return ""
 

@@ -19,13 +19,17 @@ from rfmpm.ensemble.progress import Progress
 from rfmpm.ensemble.stop import Abandoned
 from rfmpm.ensemble.worker import ISOLATED_FROM, Worker
 from rfmpm.estimators.monte_carlo import MonteCarlo
-from rfmpm.variables import FAILED_CODES, STATUS
+from rfmpm.variables import BY_CHANCE, FAILED_CODES, STATUS
 
 log = logging.getLogger("rfmpm")
 
 
 class Interrupted(RuntimeError):
     """A campaign that ended early; what is finished is on disk and the same command continues it."""
+
+
+class TooShort(Interrupted):
+    """A campaign whose wall time was over before one realisation was finished: the same command gets no further."""
 
 
 class Campaign:
@@ -37,19 +41,28 @@ class Campaign:
         journal: of the folder.
         asked: the realisations to be had.
         allowed: share of failed realisations that is allowed.
+        repeat_failed: whether what a crash or a time limit ended is run again.
         is_shown: whether progress and remarks are shown on standard error.
 
     Raises:
         FolderMismatch: if the rows in the folder are another study's or another version's.
     """
 
-    def __init__(self, crew, worker: Worker, journal, asked: range, allowed: float, is_shown: bool):
+    def __init__(
+        self, crew, worker: Worker, journal, asked: range, allowed: float, repeat_failed: bool, is_shown: bool
+    ):
         self.crew, self.worker, self.journal = crew, worker, journal
         self.allowed, self.is_shown = allowed, is_shown
         self.study, self.directory = worker.study, worker.directory
         self.asked, self.total = asked, len(asked)
         self.found = NOTHING
+        self.done = 0  # by this run
+        self.again = np.empty(0, dtype=np.int64)  # realisations that have a row and run once more
         self._look()
+        if repeat_failed:
+            places = self.found.between(asked.start, asked.stop)
+            self.again = places["realisation"][np.isin(places["status"], list(BY_CHANCE))]
+            self._look()
         self.desk = Dispatcher(self.todo, {}, self.books, journal, self.progress)
 
     def _look(self) -> None:
@@ -59,10 +72,12 @@ class Campaign:
         for event in self.journal.events("quarantine")[put_aside:]:
             where = f"{self.directory / folder.QUARANTINE}; its realisations run again"
             self._say(f"{event['segment']} is not valid and was moved to {where}")
-        plan = MonteCarlo(self.asked.stop).plan(self.found.indices)
+        plan = MonteCarlo(self.asked.stop).plan(np.setdiff1d(self.found.indices, self.again))
         missing = (range(max(part.start, self.asked.start), part.stop) for part in plan)
         self.todo = Todo(part for part in missing if part)
-        codes, numbers = np.unique(self.found.between(self.asked.start, self.asked.stop)["status"], return_counts=True)
+        places = self.found.between(self.asked.start, self.asked.stop)
+        is_kept = ~np.isin(places["realisation"], self.again)
+        codes, numbers = np.unique(places["status"][is_kept], return_counts=True)
         counts = dict(zip(codes.tolist(), numbers.tolist(), strict=True))
         policy = self.study.failures
         self.books = Books(self.total, counts, policy.action, self.allowed, self._examples(counts))
@@ -87,6 +102,9 @@ class Campaign:
         if folder.take_stop_file(self.directory):
             self._say(f"removed the file {folder.STOP_FILE}, which had asked an earlier run for its end")
         self.worker.stop.file = self.directory / folder.STOP_FILE
+        beyond = self.found.count - len(self.found.between(self.asked.start, self.asked.stop))
+        if beyond:
+            self._say(f"{beyond} more realisations in the folder than were asked for stay there, out of ensemble.nc")
         if self.todo:
             self._say(f"{len(self.todo)} of {self.total} realisations to run, {self.crew.in_words()}, one thread each")
 
@@ -144,6 +162,8 @@ class Campaign:
                 self._interrupt("workers die and nothing gets done", losses)
             before, stopped_by = self.found.count, self._round()
             losses += self.desk.losses
+            self.done += self.books.done
+            self.again = self.again[[index in self.desk.todo for index in self.again.tolist()]]
             self._look()
             idle = 0 if self.found.count > before else idle + 1
             if stopped_by and self.todo:
@@ -152,10 +172,13 @@ class Campaign:
     def _interrupt(self, reason: str, losses: list[str]) -> None:
         self.journal.write("stop", complete=False, missing=len(self.todo), reason=reason)
         lines = "".join(f"\n  {line}" for line in dict.fromkeys([*losses, reason]))
-        raise Interrupted(
-            f"stopped early with {self.books.before} of {self.total} realisations; "
-            f"run the same command again to continue{lines}"
-        )
+        counts = f"stopped early with {self.books.before} of {self.total} realisations"
+        if "--wall-time" in reason and not self.done:
+            raise TooShort(
+                f"{counts}; not one was finished by this run: give a longer --wall-time, in which making the scene and "
+                f"compiling count too (rfmpm warmup compiles beforehand){lines}"
+            )
+        raise Interrupted(f"{counts}; run the same command again to continue{lines}")
 
     def _round(self) -> str:
         """Let the crew work on what is missing; returns what asked for the end, empty if nothing did."""

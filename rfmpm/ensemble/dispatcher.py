@@ -30,6 +30,9 @@ class Todo:
     def __bool__(self) -> bool:
         return bool(self.ranges)
 
+    def __contains__(self, index: int) -> bool:
+        return any(index in part for part in self.ranges)
+
     def take(self) -> int:
         """Take the next index out."""
         first = self.ranges.popleft()

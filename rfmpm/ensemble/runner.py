@@ -33,6 +33,7 @@ def run(
     allow_failed: float | None = None,
     wall_time: float | None = None,
     log_level: str = "warning",
+    repeat_failed: bool = False,
 ) -> "xr.Dataset | None":
     """Run a campaign, or what is missing of it, and gather its rows in ensemble.nc.
 
@@ -50,6 +51,7 @@ def run(
         allow_failed: share of failed realisations that is allowed; the study's `failures.max_failed_fraction` if None.
         wall_time: time after which the campaign ends to be continued later [s]; no limit if None.
         log_level: of logs/rank-<rank>.log.
+        repeat_failed: run what a crash or a time limit ended once more.
 
     Returns:
         The rows that were asked for; None on every MPI rank but 0.
@@ -57,8 +59,8 @@ def run(
     Raises:
         FolderMismatch: if the folder cannot take this campaign; nothing in it was changed.
         LauncherMismatch: if mpirun and the MPI library do not belong together.
-        Interrupted: if it ended early, by a signal, by its wall time, because workers were lost or because
-            something could not be written.
+        Interrupted: if it ended early, by a signal, by its wall time (TooShort: before one realisation was finished),
+            because workers were lost or because something could not be written.
         CampaignFailed: if the failure policy of the study ended it.
         ValueError: for less than one realisation or worker, for workers under several MPI ranks, or for indices that
             the study does not have.
@@ -72,12 +74,13 @@ def run(
     worker = Worker(study, Path(directory), stop, log_level)
     if crew.rank > 0:
         stop.file = worker.directory / folder.STOP_FILE
-        crew.follow(worker)
+        with stop.listening():
+            crew.follow(worker)
         return None
     allowed = study.failures.max_failed_fraction if allow_failed is None else allow_failed
     try:
         with stop.listening(), folder.opened(worker.directory, study, fresh) as journal:
-            campaign = Campaign(crew, worker, journal, asked, allowed, progress)
+            campaign = Campaign(crew, worker, journal, asked, allowed, repeat_failed, progress)
             campaign.begin(fresh)
             with campaign.posted():
                 campaign.carry_out()

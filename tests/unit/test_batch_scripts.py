@@ -39,5 +39,5 @@ def test_what_a_person_edits_is_in_two_marked_places(path):
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.name)
 def test_it_goes_on_at_exit_code_75(path):
     text = path.read_text(encoding="utf-8")
-    assert '"$code" -eq 75' in text
+    assert '"$code" -eq 75' in text or "\n75) " in text
     assert "--signal=B:USR1@120" in text or "--wall-time" in text

@@ -52,6 +52,10 @@ class Interrupted(RuntimeError):
     pass
 
 
+class TooShort(Interrupted):
+    pass
+
+
 class CampaignFailed(RuntimeError):
     pass
 
@@ -60,7 +64,7 @@ class RowsDiffer(RuntimeError):
     pass
 
 
-LEFT_OUT = {"indices": None, "allow_failed": None, "wall_time": None, "log_level": "warning"}
+LEFT_OUT = {"repeat_failed": False, "indices": None, "allow_failed": None, "wall_time": None, "log_level": "warning"}
 
 
 @pytest.fixture
@@ -75,7 +79,7 @@ def campaign(replace, monkeypatch):
         codes = np.array([STATUS[status] for status in notes.statuses], dtype="int8")
         return None if not notes.statuses else xr.Dataset({"status": ("realisation", codes)})
 
-    errors = (FolderMismatch, LauncherMismatch, Interrupted, CampaignFailed, RowsDiffer)
+    errors = (FolderMismatch, LauncherMismatch, Interrupted, CampaignFailed, RowsDiffer, TooShort)
     replace("ensemble", run=run, **{error.__name__: error for error in errors})
     ranks = ModuleType("rfmpm.ensemble.mpi")
     ranks.launched_ranks = lambda: notes.launched
@@ -145,6 +149,7 @@ def test_overrides_are_validated(campaign, tmp_path):
         (RowsDiffer("realisation 1 has two different rows"), 2),
         (PermissionError(13, "Permission denied", "results/x"), 2),
         (Interrupted("stopped early with 3 of 64"), 75),
+        (TooShort("not one was finished"), 2),
         (CampaignFailed("realisation 3 ended with status crashed"), 3),
         (KeyboardInterrupt(), 75),
     ],

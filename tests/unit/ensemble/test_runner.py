@@ -262,11 +262,47 @@ def test_time_limit_is_a_row_and_not_the_end(study, tmp_path):
     np.testing.assert_array_equal(found["status"], STATUS["timeout"])
 
 
+def test_what_a_time_limit_ended_is_run_once_more_where_asked(study, reference, tmp_path):
+    run(policy(study, realisation_time_limit_s=1e-9), tmp_path, allow_failed=1.0)
+    kept = run(study, tmp_path, allow_failed=1.0)
+    np.testing.assert_array_equal(kept["status"], STATUS["timeout"])
+    found = run(study, tmp_path, repeat_failed=True)
+    assert results.content_hash(found) == results.content_hash(reference)
+    assert len(events(tmp_path, "start")) == 3
+    assert events(tmp_path, "start")[2]["todo"] == REALISATIONS
+
+
+def test_what_would_diverge_again_is_not_run_once_more(study, tmp_path, monkeypatch):
+    def diverged(prepared, index, watch=None):
+        return failed_row(prepared.study, index, "diverged", "energy came from nothing")
+
+    monkeypatch.setattr(realisation, "run", diverged)
+    run(study, tmp_path, 3, allow_failed=1.0)
+    run(study, tmp_path, 3, allow_failed=1.0, repeat_failed=True)
+    assert [event["todo"] for event in events(tmp_path, "start")] == [3, 0]
+
+
+def test_abort_goes_on_where_what_was_mended_is_run_once_more(study, reference, tmp_path):
+    short = policy(study, action="abort", realisation_time_limit_s=1e-9)
+    with pytest.raises(ensemble.CampaignFailed, match="--repeat-failed"):
+        run(short, tmp_path)
+    mended = policy(study, action="abort")
+    with pytest.raises(ensemble.CampaignFailed):
+        run(mended, tmp_path)
+    assert results.content_hash(run(mended, tmp_path, repeat_failed=True)) == results.content_hash(reference)
+
+
+def test_rows_beyond_what_was_asked_for_are_said_to_stay(study, tmp_path, capsys):
+    run(study, tmp_path, 4)
+    ensemble.run(study, tmp_path, 3, 1)
+    assert "1 more realisations in the folder than were asked for stay there" in capsys.readouterr().err
+
+
 # --- the end of the wall time, the file STOP
 
 
 def test_wall_time_that_is_spent_ends_it_to_be_continued(study, reference, tmp_path):
-    with pytest.raises(ensemble.Interrupted, match="--wall-time"):
+    with pytest.raises(ensemble.TooShort, match="give a longer --wall-time"):
         run(study, tmp_path, wall_time=1e-3)
     assert json.loads((tmp_path / "status.json").read_text())["state"] == "stopped"
     assert results.content_hash(run(study, tmp_path, wall_time=3600.0)) == results.content_hash(reference)
