@@ -32,8 +32,8 @@ code=$?
 again=no
 case $code in
 75) again=yes ;;
-0 | 2 | 3) ;;
-*) [ "${TRIES:-0}" -lt 20 ] && again=yes ;; # a rank died; its realisation is set aside at the third death
+# a rank died of a signal, which MPICH and Open MPI tell differently; its realisation is set aside at the third death
+6 | 7 | 9 | 11 | 134 | 135 | 137 | 139) [ "${TRIES:-0}" -lt 20 ] && again=yes ;;
 esac
 if [ "$again" = yes ] && [ ! -e "$DIR/STOP" ]; then
     qsub -v TRIES=$((${TRIES:-0} + 1)) "$SCRIPT" || exit "$code"

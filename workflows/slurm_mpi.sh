@@ -44,8 +44,8 @@ done
 again=no
 case $code in
 75) if [ "$(segments)" -gt "$before" ]; then again=yes; else echo "nothing was finished in this time: ask for more" >&2; fi ;;
-0 | 2 | 3) ;;
-*) [ "${SLURM_RESTART_COUNT:-0}" -lt 20 ] && again=yes ;; # a rank died; its realisation is set aside at the third death
+# a rank died of a signal, which MPICH and Open MPI tell differently; its realisation is set aside at the third death
+6 | 7 | 9 | 11 | 134 | 135 | 137 | 139) [ "${SLURM_RESTART_COUNT:-0}" -lt 20 ] && again=yes ;;
 esac
 if [ "$again" = yes ] && [ "$cancelled" = no ] && [ ! -e "$DIR/STOP" ]; then
     scontrol requeue "$SLURM_JOB_ID"
