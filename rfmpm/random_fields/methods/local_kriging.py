@@ -14,18 +14,14 @@ from rfmpm.kernel_tools import kernel
 from rfmpm.random_fields.correlation import Anisotropy
 from rfmpm.random_fields.correlation.protocol import in_words
 from rfmpm.random_fields.lattice import Lattice
-from rfmpm.random_fields.methods.cholesky import factor
 from rfmpm.random_fields.methods.circulant import Circulant, CirculantRecord, on_torus
 from rfmpm.random_fields.methods.embedding import ACCURACY, Spectrum, embed
+from rfmpm.random_fields.methods.kriging_weights import BLOCK, EARLIER, earlier_points, kriging_weights
 
-BLOCK = 6  # lattice nodes a side
-EARLIER = 16  # points before a point, at most; of the nearest SEARCHED
-SEARCHED = 64
 NODES_PER_POINT = (1.0, 3.0, 9.0, 27.0)  # lattices that are tried
 TORUS_NODES = 8  # at most, per node of the lattice
 LARGEST_ERROR = 0.02  # a field with more is refused
 COMPARED = 100  # points whose covariance with all points is formed
-NUGGET = 1e-11  # on the variances of earlier points, some of which may coincide
 AT_A_TIME = 2000  # points, to keep temporaries small
 
 
@@ -189,65 +185,17 @@ def _record(correlation: Anisotropy, points: np.ndarray, lattice: Lattice, torus
     place = (points - [lattice.x0, lattice.y0]) / [lattice.dx, lattice.dy]
     first = np.clip(np.floor(place).astype(np.int32) - (BLOCK // 2 - 1), 0, [lattice.columns, lattice.rows])
     first = np.minimum(first, np.array([lattice.columns, lattice.rows]) - BLOCK)[:, ::-1].astype(np.int32)
-    earlier, is_there = _earlier_points(points / [correlation.theta_h, correlation.theta_v])
+    earlier, is_there = earlier_points(points / [correlation.theta_h, correlation.theta_v])
     weights, deviations = np.empty((len(points), BLOCK**2 + EARLIER)), np.empty(len(points))
     corner = [lattice.x0, lattice.y0] + first[:, ::-1] * [lattice.dx, lattice.dy]
     within = np.column_stack([axis.ravel() for axis in np.meshgrid(lattice.lags_x[:BLOCK], lattice.lags_y[:BLOCK])])
     for start in range(0, len(points), AT_A_TIME):
         some = slice(start, start + AT_A_TIME)
         targets = np.concatenate([points[earlier[some]], points[some][:, None]], axis=1) - corner[some][:, None]
-        weights[some], deviations[some] = _weights(correlation, within, targets, is_there[some])
+        weights[some], deviations[some] = kriging_weights(correlation, within, targets, is_there[some])
     shape = np.array([lattice.rows, lattice.columns])
     record = LocalKrigingRecord(first, shape, amplitudes, earlier, weights, deviations, np.array(0.0))
     return record._replace(error=np.array(_largest_error(correlation, points, record)))
-
-
-def _earlier_points(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    # The nearest of the points before each point, shape (n, EARLIER), and whether there is one.
-    from scipy.spatial import cKDTree
-
-    count = len(places)
-    _, near = cKDTree(places).query(places, k=min(SEARCHED, count))
-    near = near.reshape(count, -1)
-    is_before = near < np.arange(count)[:, None]
-    rank = np.cumsum(is_before, axis=1) - 1
-    row, column = np.nonzero(is_before & (rank < EARLIER))
-    earlier, is_there = np.zeros((count, EARLIER), dtype=np.int32), np.zeros((count, EARLIER), dtype=bool)
-    earlier[row, rank[row, column]] = near[row, column]
-    is_there[row, rank[row, column]] = True
-    return earlier, is_there
-
-
-def _weights(
-    correlation: Anisotropy, block: np.ndarray, targets: np.ndarray, is_there: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Kriging weights and deviation of each point, from the nodes of its block and the points before it.
-
-    Args:
-        correlation: of the field.
-        block: nodes from the first one of a block, shape (BLOCK^2, 2) [m].
-        targets: the earlier points and, last, the point itself, from there, shape (m, EARLIER + 1, 2) [m].
-        is_there: whether there is such an earlier point, shape (m, EARLIER).
-
-    Returns:
-        weights, shape (m, BLOCK^2 + EARLIER) [-], and deviations, shape (m,) [-].
-    """
-    lag = block[:, None] - block
-    lower, _ = factor(lambda: correlation.rho(lag[..., 0], lag[..., 1]))
-    to_parts = np.linalg.inv(lower)  # from values at the nodes of a block to independent ones
-    lag_x, lag_y = np.moveaxis(targets[:, :, None] - block, -1, 0)
-    shares = correlation.rho(lag_x, lag_y) @ to_parts.T
-    lag_x, lag_y = np.moveaxis(targets[:, :, None] - targets[:, None], -1, 0)
-    left = correlation.rho(lag_x, lag_y) - shares @ shares.transpose(0, 2, 1)
-    is_known = np.concatenate([is_there, np.ones((len(targets), 1), dtype=bool)], axis=1)
-    left *= is_known[:, :, None] & is_known[:, None]
-    among, with_point = left[:, :-1, :-1], left[:, :-1, -1]
-    diagonal = np.arange(EARLIER)
-    among[:, diagonal, diagonal] = np.where(is_there, among[:, diagonal, diagonal] + NUGGET, 1.0)
-    of_points = np.linalg.solve(among, with_point[..., None])[..., 0]
-    of_nodes = (shares[:, -1] - np.einsum("mk,mkb->mb", of_points, shares[:, :-1])) @ to_parts
-    variance = left[:, -1, -1] - np.einsum("mk,mk->m", of_points, with_point)
-    return np.concatenate([of_nodes, of_points], axis=1), np.sqrt(np.clip(variance, 0.0, 1.0))
 
 
 def _torus(record: LocalKrigingRecord) -> CirculantRecord:

@@ -51,7 +51,8 @@ def test_the_error_is_found_between_points_that_are_not_compared_too():
     correlation, points = CORRELATIONS["markov_ellipsoidal"](6.0, 1.0), scattered(700)
     record = LocalKriging.prepare(correlation, points)
     error = np.max(np.abs(covariance_of(record) - asked(correlation, points)))
-    assert error < 2.0 * record.error  # largest of 700 rows against largest of 100
+    # Largest of 700 rows against largest of 100: within a factor of two as long as errors have no rare large ones.
+    assert error < 2.0 * record.error
 
 
 def test_many_scattered_points_take_it():
