@@ -20,6 +20,7 @@ def rerun(
 
     study = load_study(directory / "study.toml")
     from rfmpm import ensemble, results
+    from rfmpm.variables import BY_CHANCE, STATUS_NAMES
 
     try:
         recorded = ensemble.find_row(directory, index)
@@ -32,6 +33,11 @@ def rerun(
     for change in _changes(recorded.attributes, results.row_attributes(study)):
         typer.echo(f"then and now: {change}")
     names = list(results.differences(recorded.columns, found))
+    status = int(recorded.columns["status"][0])
+    if names and status in BY_CHANCE:
+        reason = recorded.columns["status_reason"][0]
+        words = f"realisation {index} is on record as {STATUS_NAMES[status]} ({reason}), which did not come again"
+        end(f"{words}; rfmpm run --repeat-failed replaces the row", TOO_MANY_FAILED)
     if names:
         values = [f"  {name}: {_shown(recorded.columns[name])} -> {_shown(found[name])}" for name in names]
         end("\n".join([f"realisation {index} is not the one on record; it differs in", *values]), TOO_MANY_FAILED)

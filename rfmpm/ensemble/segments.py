@@ -14,7 +14,7 @@ import numpy as np
 from rfmpm import results
 from rfmpm.ensemble.finished import NOTHING, PLACES, Finished, Segment, one_each
 from rfmpm.ensemble.folder import QUARANTINE, SEGMENTS, FolderMismatch
-from rfmpm.variables import active_variables
+from rfmpm.variables import BY_CHANCE, active_variables
 
 log = logging.getLogger("rfmpm")
 
@@ -151,6 +151,8 @@ def _part(first: int, total: int, study) -> dict[str, int]:
 def find_row(directory: Path, index: int) -> results.StoredRows:
     """Read the row of one realisation, of whatever study and version, complete campaign or not.
 
+    Of several, one that did not end by chance (a crash, a time limit) comes first.
+
     Args:
         directory: of the campaign.
         index: of the realisation.
@@ -161,12 +163,18 @@ def find_row(directory: Path, index: int) -> results.StoredRows:
     Raises:
         LookupError: if no valid segment has it.
     """
+    by_chance = None
     for path in sorted((Path(directory) / SEGMENTS).glob(f"*{results.ROWS_SUFFIX}")):
         if (stored := _valid(path, None)) is None:
             continue
         at = np.flatnonzero(stored.columns["realisation"] == index)
         if len(at):
-            return results.StoredRows({name: values[at] for name, values in stored.columns.items()}, stored.attributes)
+            row = results.StoredRows({name: values[at] for name, values in stored.columns.items()}, stored.attributes)
+            if int(row.columns["status"][0]) not in BY_CHANCE:
+                return row
+            by_chance = by_chance or row
+    if by_chance is not None:
+        return by_chance
     raise LookupError(f"{directory}: realisation {index} has no row here; has it been run?")
 
 

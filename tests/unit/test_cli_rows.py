@@ -91,6 +91,18 @@ def test_rerun_of_a_realisation_that_raises_compares_the_failed_row(study, folde
     assert "realisation 1 is the one on record" in result.stdout
 
 
+def test_rerun_of_a_row_that_a_time_limit_ended_says_so_and_one_beside_it_counts(study, folder):
+    (path,) = (folder / "segments").iterdir()
+    row = failed_row(study, 1, "timeout", "took longer than 1 s")
+    late = results.write_rows(path.parent, "0", results.columns([row], study), results.row_attributes(study))
+    assert "is the one on record" in call("rerun", folder, "--index", 1).stdout  # the row that ended by itself
+    path.unlink()
+    result = call("rerun", folder, "--index", 1)
+    assert result.exit_code == 3
+    assert "is on record as timeout (took longer than 1 s), which did not come again" in result.stderr
+    assert late.exists()
+
+
 def test_rerun_of_a_row_that_is_not_there_is_an_error(folder):
     result = call("rerun", folder, "--index", 3)
     assert result.exit_code == 2
