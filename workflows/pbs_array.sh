@@ -33,7 +33,7 @@ part=${PART:-$PBS_ARRAY_INDEX} # PART: of a job that is submitted once more
 first=$((part * REALISATIONS / PARTS))
 end=$(((part + 1) * REALISATIONS / PARTS))
 
-rfmpm run "$STUDY" --realisations "$REALISATIONS" --indices "$first:$end" --out "$DIR/part-$part" \
+rfmpm run "$STUDY" --realisations "$REALISATIONS" --indices "$first:$end" --out "$DIR/part-$part" --allow-failed 1 \
     --workers "$PROCESSORS" --wall-time "$TIME_TO_RUN"
 code=$?
 

@@ -34,7 +34,7 @@ end=$(((part + 1) * REALISATIONS / parts))
 
 segments() { find "$DIR/part-$part/segments" -name '*.rows' 2>/dev/null | wc -l; }
 before=$(segments)
-rfmpm run "$STUDY" --realisations "$REALISATIONS" --indices "$first:$end" --out "$DIR/part-$part" \
+rfmpm run "$STUDY" --realisations "$REALISATIONS" --indices "$first:$end" --out "$DIR/part-$part" --allow-failed 1 \
     --workers "$SLURM_CPUS_PER_TASK" &
 campaign=$!
 cancelled=no

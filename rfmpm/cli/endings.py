@@ -35,6 +35,20 @@ def _refusals() -> type[Exception]:
     return StudyError
 
 
+def failures(dataset: Any) -> int:
+    """Count the failed rows of a dataset."""
+    from rfmpm.variables import FAILED_CODES
+
+    return int(dataset["status"].isin(list(FAILED_CODES)).sum())
+
+
+def end_if_too_many_failed(failed: int, total: int, allowed: float, where: str = "") -> None:
+    """End with an exit code if more than the allowed share of rows failed; `where` says of which campaign."""
+    if failed > allowed * total:
+        share = f"more than the allowed {allowed:.3g} of them"
+        end(f"{where}{failed} of {total} realisations failed, {share}", TOO_MANY_FAILED)
+
+
 def end(message: str, code: int) -> NoReturn:
     """Say why, and leave with an exit code."""
     if is_first_rank():

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from rfmpm.cli.endings import STOPPED_EARLY, WRONG_STUDY, end
+from rfmpm.cli.endings import STOPPED_EARLY, WRONG_STUDY, end, end_if_too_many_failed
 
 MOST_RANGES = 20  # of what is missing
 
@@ -26,6 +26,7 @@ def merge(
     typer.echo(f"{whole.total - lacking} of {whole.total} realisations in {out}")
     if not lacking:
         typer.echo(f"dataset: {out / 'ensemble.nc'}")
+        end_if_too_many_failed(whole.failed, whole.total, whole.allowed)
         return
     named = ranges(whole.missing)
     more = f" and {len(named) - MOST_RANGES} more gaps" if len(named) > MOST_RANGES else ""

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY, end
+from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY, end, end_if_too_many_failed, failures
 from rfmpm.cli.ranges import index_range
 
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
@@ -99,7 +99,8 @@ def run(
     typer.echo(f"report:  {reporting.write(folder)}")
     for line in reporting.summary_lines(dataset, settings):
         typer.echo(line)
-    end_if_too_many_failed(dataset, settings.failures.max_failed_fraction if allow_failed is None else allow_failed)
+    allowed = settings.failures.max_failed_fraction if allow_failed is None else allow_failed
+    end_if_too_many_failed(failures(dataset), dataset.sizes["realisation"], allowed)
 
 
 def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[str, Any]) -> Any:
@@ -121,14 +122,3 @@ def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[st
         end(str(error), WRONG_STUDY)
     except ensemble.Interrupted as error:
         end(str(error), STOPPED_EARLY)
-
-
-def end_if_too_many_failed(dataset: Any, allowed: float, where: str = "") -> None:
-    """End with an exit code if more than the allowed share of rows failed; `where` says of which campaign."""
-    from rfmpm.variables import FAILED_CODES
-
-    failed = int(dataset["status"].isin(list(FAILED_CODES)).sum())
-    total = dataset.sizes["realisation"]
-    if failed > allowed * total:
-        share = f"more than the allowed {allowed:.3g} of them"
-        end(f"{where}{failed} of {total} realisations failed, {share}", TOO_MANY_FAILED)

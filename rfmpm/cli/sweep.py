@@ -6,8 +6,15 @@ from typing import Annotated, Any
 
 import typer
 
-from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY, end, is_first_rank
-from rfmpm.cli.run import end_if_too_many_failed
+from rfmpm.cli.endings import (
+    STOPPED_EARLY,
+    TOO_MANY_FAILED,
+    WRONG_STUDY,
+    end,
+    end_if_too_many_failed,
+    failures,
+    is_first_rank,
+)
 
 FORM = "write --vary KEY=V1,V2,... or NAME:KEY=V1,V2,... or KEY1,KEY2=A1:B1,A2:B2,... for keys that change together"
 
@@ -45,7 +52,8 @@ def sweep(
         _write(folder, settings, axes, campaigns)
         for cell in grid:
             allowed = cell.study.failures.max_failed_fraction
-            end_if_too_many_failed(campaigns[cell.position], allowed, f"cell {cell.name}: ")
+            rows = campaigns[cell.position]
+            end_if_too_many_failed(failures(rows), rows.sizes["realisation"], allowed, f"cell {cell.name}: ")
 
 
 def read_axis(text: str) -> Any:

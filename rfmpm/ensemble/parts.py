@@ -25,6 +25,8 @@ class Whole:
 
     total: int  # realisations of the study
     missing: np.ndarray  # realisations that no part has, sorted
+    failed: int  # of those that are there
+    allowed: float  # share of failed ones that the study allows
 
 
 def merge_parts(parts: Sequence[Path], out: Path) -> Whole:
@@ -69,7 +71,7 @@ def merge_parts(parts: Sequence[Path], out: Path) -> Whole:
         if not len(missing):
             _finish(out, study, journal, found, {"start": start, "end": end})
         _post(out, study.study.realisations, found, start)
-    return Whole(study.study.realisations, missing)
+    return Whole(study.study.realisations, missing, found.failed, study.failures.max_failed_fraction)
 
 
 def _study(part: Path):

@@ -124,6 +124,16 @@ def test_merge_ends_with_the_dataset(study, folder, tmp_path):
     assert results.open_ensemble(tmp_path / "out").sizes["realisation"] == 3
 
 
+def test_merge_judges_the_share_of_failed_rows(study, folder, tmp_path):
+    rows = [failed_row(study, index, "diverged", "energy") for index in range(3, study.study.realisations)]
+    origin = results.row_attributes(study)
+    results.write_rows(folder / "segments", "failed", results.columns(rows, study), origin)
+    result = call("merge", folder, "--out", tmp_path / "whole")
+    assert result.exit_code == 3
+    assert "5 of 8 realisations failed, more than the allowed 0.05 of them" in result.stderr
+    assert (tmp_path / "whole" / "ensemble.nc").exists()
+
+
 def test_merge_of_rows_that_contradict_each_other_is_an_error(folder, incomplete, tmp_path):
     change(folder, run_out=1.5)
     result = call("merge", folder, incomplete, "--out", tmp_path / "out")
