@@ -159,9 +159,11 @@ def test_folder_that_may_not_be_written_is_refused_in_words_and_not_changed(tmp_
     before = {path.name: path.stat().st_mtime_ns for path in (tmp_path / "results").iterdir()}
     for path in [tmp_path, *tmp_path.parents[:-2]]:
         path.chmod(0o755)
-    # the libraries may lie where others may not read: loaded before
+    # The libraries may lie where others may not read: a campaign elsewhere loads them all, and the study, before.
     code = (
-        "import os, sys; sys.path[:0] = [sys.argv[1]]; import campaign; from rfmpm import realisation\n"
+        "import os, sys; sys.path[:0] = [sys.argv[1]]; import campaign\n"
+        "study = campaign.load_study(campaign.COARSE); campaign.load_study = lambda path: study\n"
+        "campaign.main(sys.argv[2] + '_before', '1', '1')\n"
         "os.setgroups([]); os.setuid(65534); sys.exit(campaign.main(*sys.argv[2:]))"
     )
     command = [sys.executable, "-c", code, str(CAMPAIGN.parent), str(tmp_path / "results"), str(REALISATIONS + 1), "1"]
