@@ -1,7 +1,8 @@
 """How a command ends when it cannot do what it was asked: one message on standard error, one exit code."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import wraps
 from typing import Any, NoReturn
 
@@ -33,6 +34,21 @@ def _refusals() -> type[Exception]:
     from rfmpm.study import StudyError
 
     return StudyError
+
+
+@contextmanager
+def campaigns_end_in_words() -> Iterator[None]:
+    """Let what a campaign raises in the body end in its message and exit code."""
+    from rfmpm import ensemble
+
+    try:
+        yield
+    except (ensemble.FolderMismatch, ensemble.LauncherMismatch, ensemble.RowsDiffer, ensemble.TooShort) as error:
+        end(str(error), WRONG_STUDY)
+    except ensemble.CampaignFailed as error:
+        end(str(error), TOO_MANY_FAILED)
+    except ensemble.Interrupted as error:
+        end(str(error), STOPPED_EARLY)
 
 
 def failures(dataset: Any) -> int:

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY, end, end_if_too_many_failed, failures
+from rfmpm.cli.endings import WRONG_STUDY, campaigns_end_in_words, end, end_if_too_many_failed, failures
 from rfmpm.cli.ranges import index_range
 
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
@@ -111,14 +111,5 @@ def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[st
         end(f"--indices {part[0]}:{part[1]}: the study has {settings.study.realisations}", WRONG_STUDY)
     if workers is not None and (launched_ranks() or 1) > 1:
         end("--workers: the ranks of mpirun are the workers; leave the option out", WRONG_STUDY)
-    try:
-        number = settings.study.realisations
-        return ensemble.run(settings, folder, realisations=number, workers=workers, **options)
-    except (ensemble.FolderMismatch, ensemble.LauncherMismatch, ensemble.RowsDiffer) as error:
-        end(str(error), WRONG_STUDY)
-    except ensemble.CampaignFailed as error:
-        end(str(error), TOO_MANY_FAILED)
-    except ensemble.TooShort as error:
-        end(str(error), WRONG_STUDY)
-    except ensemble.Interrupted as error:
-        end(str(error), STOPPED_EARLY)
+    with campaigns_end_in_words():
+        return ensemble.run(settings, folder, realisations=settings.study.realisations, workers=workers, **options)

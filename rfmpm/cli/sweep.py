@@ -7,9 +7,8 @@ from typing import Annotated, Any
 import typer
 
 from rfmpm.cli.endings import (
-    STOPPED_EARLY,
-    TOO_MANY_FAILED,
     WRONG_STUDY,
+    campaigns_end_in_words,
     end,
     end_if_too_many_failed,
     failures,
@@ -91,21 +90,14 @@ def _check_names(names: list[str]) -> None:
 
 
 def _campaigns(grid: list, folder: Path, workers: int | None) -> dict[tuple[int, ...], Any]:
-    from rfmpm import ensemble
     from rfmpm.ensemble.sweep import run_cells
 
     def tell(line: str) -> None:
         if is_first_rank():
             typer.echo(line)
 
-    try:
+    with campaigns_end_in_words():
         return {cell.position: rows for cell, rows in run_cells(grid, folder, workers, tell)}
-    except (ensemble.FolderMismatch, ensemble.LauncherMismatch, ensemble.RowsDiffer) as error:
-        end(str(error), WRONG_STUDY)
-    except ensemble.CampaignFailed as error:
-        end(str(error), TOO_MANY_FAILED)
-    except ensemble.Interrupted as error:
-        end(str(error), STOPPED_EARLY)
 
 
 def _write(folder: Path, settings: Any, axes: list, campaigns: dict) -> None:

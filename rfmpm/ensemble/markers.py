@@ -1,6 +1,7 @@
 """Markers: what each worker runs at the moment, so that the next start knows what was not finished."""
 
 import json
+import logging
 import os
 import platform
 from dataclasses import dataclass
@@ -9,6 +10,8 @@ from typing import Any
 
 from rfmpm.campaign_status import now, replace_text
 from rfmpm.ensemble.folder import RUNNING
+
+log = logging.getLogger("rfmpm")
 
 
 @dataclass(frozen=True)
@@ -55,7 +58,7 @@ def take_left_behind(directory: Path) -> list[dict[str, Any]]:
         directory: of the campaign.
 
     Returns:
-        The contents of the markers, their rank included; one that was torn tells nothing and is left out.
+        The contents of the markers, their rank included; one that was torn tells nothing and is named in the log.
     """
     found = []
     for path in sorted((Path(directory) / RUNNING).glob("*.json")):
@@ -63,6 +66,6 @@ def take_left_behind(directory: Path) -> list[dict[str, Any]]:
             content = json.loads(path.read_text(encoding="utf-8"))
             found.append({**content, "realisation": int(content["realisation"]), "rank": int(path.stem)})
         except (ValueError, KeyError, TypeError):
-            pass
+            log.warning("%s was torn: the start that it stood for is not counted", path)
         path.unlink()
     return found

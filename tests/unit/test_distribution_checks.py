@@ -4,12 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cohesion_field import FIELD, changed, problems_of
 
 from rfmpm.random_fields.marginals import beta, bounded_tanh, empirical
 from rfmpm.study import StudyError, distribution_checks, load_study
 
 RANDOM = Path(__file__).parents[2] / "configs" / "short_slope_random.toml"
-FIELD = "random_field.cohesion"
 SAMPLE = [float(value) for value in range(10, 30)]
 EMPIRICAL = {"distribution": "empirical", "sample": SAMPLE}
 BETA = {"distribution": "beta", "upper_over_mean": 2.0}
@@ -18,16 +18,6 @@ BETA = {"distribution": "beta", "upper_over_mean": 2.0}
 @pytest.fixture
 def study():
     return load_study(RANDOM)
-
-
-def changed(study, keys):
-    return study.with_changes({f"{FIELD}.{key}": value for key, value in keys.items()})
-
-
-def problems_of(study, keys):
-    with pytest.raises(StudyError) as refusal:
-        changed(study, keys)
-    return refusal.value.problems
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cohesion_field import FIELD, changed, problems_of
 from typer.testing import CliRunner
 
 import rfmpm
@@ -16,7 +17,7 @@ from rfmpm.study import StudyError, data_checks, fields_need_making, soils, with
 from rfmpm.study.making import FEW_POINTS
 
 CONFIGS = Path(__file__).parents[2] / "configs"
-FIELD, FRICTION, RESIDUAL = (f"random_field.{name}" for name in ("cohesion", "friction_angle", "residual_cohesion"))
+FRICTION, RESIDUAL = "random_field.friction_angle", "random_field.residual_cohesion"
 BETA = {"distribution": "beta", "lower_over_mean": 0.4, "upper_over_mean": 2.0}  # of a mean of 20 kPa: 8 to 40 kPa
 THIRTY_BELOW = {"layer": [{"top_m": 3.0, "mean_kpa": 30.0}]}
 
@@ -31,16 +32,6 @@ def study():
 @pytest.fixture(scope="module")
 def drained():
     return rfmpm.load_study(CONFIGS / "drained_cross_correlated.toml")
-
-
-def changed(study, keys):
-    return study.with_changes({f"{FIELD}.{key}": value for key, value in keys.items()})
-
-
-def problems_of(study, keys):
-    with pytest.raises(StudyError) as refusal:
-        changed(study, keys)
-    return refusal.value.problems
 
 
 def datum(value=20.0, x_m=3.0, y_m=2.0, **keys):

@@ -31,6 +31,10 @@ def leave(directory, host, pid=1):
     (directory / lock.LOCK_FILE).write_text(json.dumps({"host": host, "pid": pid, "started": "yesterday"}))
 
 
+def holder(directory):
+    return json.loads((directory / lock.LOCK_FILE).read_text())
+
+
 def test_second_is_refused_and_told_who_holds_it(tmp_path):
     with lock.locked(tmp_path, "today"), pytest.raises(lock.InUse, match=r"process \d+ on .+, started today"):
         lock.locked(tmp_path, "later").__enter__()
@@ -43,7 +47,7 @@ def test_dead_of_this_host_is_taken_over_at_once(tmp_path, monkeypatch):
     monkeypatch.setattr(lock, "_look_for_life", lambda *_: pytest.fail("looked for life"))
     leave(tmp_path, lock.platform.node())
     with lock.locked(tmp_path, "now"):
-        pass
+        assert holder(tmp_path)["started"] == "now"
 
 
 def test_dead_of_another_host_is_taken_over_after_a_look(tmp_path, caplog):
@@ -88,4 +92,4 @@ def test_clock_set_back_refuses_nothing(tmp_path, monkeypatch):
         json.dumps({"host": lock.platform.node(), "pid": 1, "started": "2999-01-01T00:00:00+00:00"})
     )
     with lock.locked(tmp_path, "1970-01-01T00:00:00+00:00"):
-        pass
+        assert holder(tmp_path)["started"].startswith("1970")
