@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import numpy as np
     import xarray as xr
 
-    from rfmpm.realisation import Outcome
+    from rfmpm.outcome import Outcome
     from rfmpm.results import open_ensemble
     from rfmpm.study import Study, StudyError, load_study
 

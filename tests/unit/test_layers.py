@@ -16,6 +16,7 @@ FLOORS = {
     6: ("ensemble", "report"),
     5.5: ("campaign_status",),
     5: ("realisation", "results"),
+    4.7: ("outcome",),
     4.5: ("observer",),
     4: ("quantities", "estimators", "stability"),
     3.5: ("random_fields.properties", "random_fields.comparison"),

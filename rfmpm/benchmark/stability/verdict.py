@@ -11,7 +11,8 @@ from rfmpm.benchmark.stability.case import Case
 from rfmpm.kernel_tools import Tensor, at
 from rfmpm.mpm.protocols import update_stress
 from rfmpm.mpm.scene import GRAVITY, domain_size, release
-from rfmpm.realisation import Outcome, Prepared
+from rfmpm.outcome import Outcome
+from rfmpm.realisation import Prepared
 from rfmpm.study import StudyError
 from rfmpm.variables import FAILED
 
