@@ -18,7 +18,7 @@ FLOORS = {
     5: ("realisation", "results"),
     4.7: ("outcome",),
     4.5: ("observer",),
-    4: ("quantities", "estimators", "stability"),
+    4: ("quantities", "estimators", "sampling", "stability"),
     3.5: ("random_fields.properties", "random_fields.comparison"),
     3: ("mpm.scene", "mpm.solvers", "random_fields.field", "random_fields.statistics"),
     2.5: (
