@@ -49,6 +49,8 @@ def allocate(nested: Nested, work: Sequence[float], levels: Sequence[int]) -> Al
     cumulated = np.cumsum([bracket[present, 0] for bracket in found.bracket], axis=0)
     total = cumulated.var(axis=1, ddof=1) if present.size > 1 else np.zeros(len(levels))
     variance = np.diff(total, prepend=0.0)
+    if nested.is_probability:  # no difference among n rows does not mean that there is none
+        variance = np.maximum(variance, 1.0 / max(present.size, 1))
     cost = np.array([work[level] for level in levels], float)
     share = np.sqrt(np.maximum(variance, 1e-6 * max(total[-1], 1e-300)) / cost)
     ratio = np.maximum.accumulate(np.minimum(share / share[0], LARGEST_RATIO))
