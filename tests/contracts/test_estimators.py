@@ -1,9 +1,9 @@
 """Every listed estimator: unbiased on problems with known answers, intervals that cover, sane at the extremes.
 
 Coverage: 500 campaigns with fixed seeds; 0.93 at least, and 0.97 at most where an interval does not set out to be
-conservative (probabilities do while counts are few: Clopper-Pearson for plain Monte Carlo, Wilson's allowance for the
-others). Bias: with as many cases as here a bias of 2 standard errors comes about by chance, so 3.5 are allowed (two-sided
-chance of one false alarm among 50 cases: 2 %).
+conservative (probabilities do while counts are few: Clopper-Pearson for plain Monte Carlo, Wilson's allowance for
+others). Bias: with as many cases as here a bias of 2 standard errors comes about by chance, so 3.5 are allowed
+(two-sided chance of one false alarm among 50 cases: 2 %).
 """
 
 import numpy as np
@@ -34,7 +34,8 @@ def check(name: str, question: str, n: int | None, repeats: int = REPEATS, **wid
     found = repeat(name, model, wanted, n, repeats)
     if question != "quantile":  # a quantile has a bias of the order 1 / n, well inside its interval
         assert abs(found.bias_in_standard_errors(truth)) < STANDARD_ERRORS
-    scatter = 2.0 * np.sqrt(0.05 * 0.95 / repeats)  # of a measured coverage
+    # 0.93 to 0.97 for 500 repeats: 2 standard errors of a measured coverage of 0.95
+    scatter = 2.05 * np.sqrt(0.05 * 0.95 / repeats)
     assert found.coverage(truth) >= 0.95 - scatter
     if question == "mean":
         assert found.coverage(truth) <= 0.95 + scatter
@@ -42,7 +43,8 @@ def check(name: str, question: str, n: int | None, repeats: int = REPEATS, **wid
 
 
 def test_every_entry_has_a_model_problem():
-    assert {name.split(",")[0] for name in MAKERS} == set(ESTIMATORS)
+    own_tests = {"subset_simulation"}  # rare events, chains instead of independent units
+    assert {name.split(",")[0] for name in MAKERS} == set(ESTIMATORS) - own_tests
 
 
 @pytest.mark.slow
