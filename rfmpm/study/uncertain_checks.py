@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator
 from copy import deepcopy
 from typing import Any
 
-from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from rfmpm.study.errors import Problem
@@ -23,32 +22,25 @@ GIVEN_BY = ({"mean", "coefficient_of_variation"}, {"low", "high"})
 
 
 def uncertain_keys(known: Known) -> dict[str, tuple[Any, FieldInfo | None]]:
-    """Dotted paths of the numbers that may be uncertain, with what they may hold."""
+    """Dotted paths of the numbers that may be uncertain, with what they may hold; Unknown where a table is wrong."""
     found = {}
     for place in PLACES:
-        path = path_of(place)
-        if value_at(known.data, path) is not None:
-            annotation, _ = field_at(known.model, known.data, path)
-            found |= _numbers_below(annotation, value_at(known.data, path), place)
+        annotation, _ = field_at(known.model, known.data, path_of(place))
+        found |= _numbers_below(known, annotation, place)
     return found
 
 
-def _numbers_below(annotation: Any, data: Any, place: str) -> dict[str, tuple[Any, FieldInfo | None]]:
-    if members := tables(annotation):
-        return _numbers_of(chosen(members, data), data, place)
-    found = {}
-    for key in data if isinstance(data, dict) else range(len(data)):
-        found |= _numbers_below(child(annotation, data, key)[0], data[key], f"{place}.{key}")
-    return found
-
-
-def _numbers_of(model: type[BaseModel], data: dict, place: str) -> dict[str, tuple[Any, FieldInfo | None]]:
-    found = {}
-    for name, info in model.model_fields.items():
+def _numbers_below(known: Known, annotation: Any, place: str) -> dict[str, tuple[Any, FieldInfo | None]]:
+    data, found = known[place], {}
+    if not (members := tables(annotation)):
+        for key in range(len(data or ())) if isinstance(data, list | None) else data:
+            found |= _numbers_below(known, child(annotation, data, key)[0], f"{place}.{key}")
+        return found
+    for name, info in chosen(members, data).model_fields.items():
         if bare(info.annotation) is float and name not in NUMERICAL:
             found[f"{place}.{name}"] = info.annotation, info
-        elif name in LISTS and data.get(name):
-            found |= _numbers_below(info.annotation, data[name], f"{place}.{name}")
+        elif name in LISTS:
+            found |= _numbers_below(known, info.annotation, f"{place}.{name}")
     return found
 
 
@@ -58,9 +50,11 @@ def _entries(known: Known) -> Iterator[str]:
 
 
 def _key_may_be_uncertain(known: Known) -> Iterator[Problem]:
-    allowed = uncertain_keys(known)
-    if known["uncertain"] is not None and not known["uncertain"]:
+    if known["uncertain"] is None:
+        return
+    if not known["uncertain"]:
         yield problem(known, "uncertain", "must have a table, written [[uncertain]], or be left out")
+    allowed = uncertain_keys(known)
     for entry in _entries(known):
         key = known[f"{entry}.key"]
         if key not in allowed:
