@@ -12,6 +12,7 @@ from rfmpm.mpm import geometry
 from rfmpm.mpm import scene as scenes
 from rfmpm.random_fields import properties as random_properties
 from rfmpm.random_fields.marginals import Marginal
+from rfmpm.stability import Surfaces, prepare_surfaces
 from rfmpm.study import StudyError
 from rfmpm.uncertainty import fitted, marginals, values
 
@@ -24,6 +25,7 @@ class Prepared:
     scene: scenes.Scene
     properties: random_properties.Properties
     uncertain: tuple[Marginal, ...] = ()  # distributions of the study's uncertain numbers
+    surfaces: Surfaces | None = None  # for the factor of safety, where the study asks for it
 
     @property
     def n_variables(self) -> int:
@@ -52,7 +54,12 @@ def prepare(study, store: Path | None = None) -> Prepared:
     """
     scene = scenes.build(study)
     points = np.column_stack(scene.points.position)
-    return Prepared(study, scene, _properties(study, scene.body, points, store), marginals(study))
+    properties = _properties(study, scene.body, points, store)
+    surfaces = None
+    if study.quantities.factor_of_safety:
+        square = scene.cell / sqrt(study.discretisation.points_per_cell)
+        surfaces = prepare_surfaces(scene.body, points, square)
+    return Prepared(study, scene, properties, marginals(study), surfaces)
 
 
 def prepare_fields(study) -> random_properties.Properties:
@@ -107,7 +114,8 @@ def drawn(prepared: Prepared, xi: np.ndarray) -> tuple[Prepared, np.ndarray]:
     scene = scenes.with_parameters(prepared.scene, study)
     points = np.column_stack(scene.points.position)
     properties = _properties(study, scene.body, points, None, prepared.properties)
-    return Prepared(study, scene, properties), fitted(xi[len(prepared.uncertain) :], properties.n_variables)
+    own = Prepared(study, scene, properties, surfaces=prepared.surfaces)
+    return own, fitted(xi[len(prepared.uncertain) :], properties.n_variables)
 
 
 def realise_fields(study, index: int, level: int = 0, xi: np.ndarray | None = None) -> dict[str, np.ndarray]:

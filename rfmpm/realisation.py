@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from math import inf, nan
+from math import inf, nan, sqrt
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from rfmpm.observer import Observer
 from rfmpm.outcome import Outcome, measure, verdict
 from rfmpm.preparation import Prepared, draw_xi, drawn, prepare, prepare_fields, realise_fields
 from rfmpm.random_fields import properties as random_properties
+from rfmpm.stability import factor_of_safety
 from rfmpm.study import StudyError
 from rfmpm.uncertainty import values
 from rfmpm.variables import STATUS, failed_row
@@ -37,6 +38,7 @@ __all__ = [
     "uncertain_values",
 ]
 
+STRENGTH_OF = {"sqrt_j2": 1.0, "sqrt_3j2": 1.0 / sqrt(3.0)}  # undrained shear strength over cohesion
 WORTH_SHARING = 20_000  # points from which threads that share a step gain more than they wait for each other
 
 
@@ -176,6 +178,14 @@ def simulate(
     return _simulate(prepared, draw_xi(prepared, index, level) if xi is None else xi, frames, threads)
 
 
+def _factor(prepared: Prepared, cohesion: np.ndarray) -> dict[str, float]:
+    if prepared.surfaces is None:
+        return {}
+    material = prepared.study.material[0]
+    strength = cohesion * STRENGTH_OF[material.strength_convention]
+    return {"factor_of_safety": factor_of_safety(prepared.surfaces, strength, material.unit_weight_kn_m3 * 1e3)}
+
+
 def _simulate(
     prepared: Prepared,
     xi: np.ndarray,
@@ -200,6 +210,7 @@ def _simulate(
     cohesion = {"cohesion": np.full(final["x"].shape, getattr(scene.material, "cohesion_kpa", nan) * 1e3)}
     final |= cohesion | fields
     quantities = measure(study, scene, own, final, observer, now, status) | uncertain_values(prepared, xi)
+    quantities |= _factor(at_values, final["cohesion"])
     return Outcome(
         quantities,
         status,

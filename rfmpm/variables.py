@@ -29,6 +29,10 @@ def _has_surface(study) -> bool:
     return study.output.surface_bin_m is not None
 
 
+def _has_factor(study) -> bool:
+    return bool(study.quantities.factor_of_safety)
+
+
 def _is_uncertain(study) -> bool:
     return study.uncertain is not None
 
@@ -164,6 +168,18 @@ VARIABLES = _table(
         "error of the energy balance",
         "Work of gravity less kinetic energy, elastic energy gained, plastic work, work of friction and numerical "
         "dissipation, relative to the work of gravity.",
+    ),
+    Variable(
+        "factor_of_safety",
+        ("realisation",),
+        "float64",
+        "1",
+        "factor of safety",
+        {
+            "comment": "Smallest over circular slip surfaces above the base, by equilibrium of moments (phi = 0), with "
+            "the peak cohesion at the material points; known where the simulation failed, too."
+        },
+        _has_factor,
     ),
     Variable(
         "final_surface",

@@ -17,7 +17,7 @@ LIMITS = {  # in words, and whether a value keeps them
     "le": ("at most", operator.le),
     "lt": ("less than", operator.lt),
 }
-NOUNS = {float: "a number", int: "a whole number", str: "text in quotes, not empty"}
+NOUNS = {bool: "true or false", float: "a number", int: "a whole number", str: "text in quotes, not empty"}
 
 
 @dataclass(frozen=True)
