@@ -15,7 +15,7 @@ FLOORS = {
     6.2: ("cost",),
     6: ("ensemble", "report"),
     5.5: ("campaign_status",),
-    5: ("realisation", "results"),
+    5: ("realisation", "results", "field_influence"),
     4.7: ("outcome", "preparation"),
     4.5: ("observer",),
     4: ("quantities", "estimators", "sampling", "stability"),
