@@ -13,12 +13,18 @@ from rfmpm.study.known import Known, Unknown, problem
 from rfmpm.study.layer_checks import LAYER_CHECKS
 from rfmpm.study.material_checks import MATERIAL_CHECKS
 from rfmpm.study.size_checks import SIZE_CHECKS
+from rfmpm.study.uncertain_checks import UNCERTAIN_CHECKS, problems_at_the_ends
 
 LARGEST_CELL_OVER_LENGTH = 1.0  # of a softening length; the transfer itself averages over 0.7 cells
 
 
 def joint_problems(known: Known) -> list[Problem]:
     """Everything that is wrong between keys, as far as their values are known."""
+    found = _problems(known)
+    return found or problems_at_the_ends(known, _problems)
+
+
+def _problems(known: Known) -> list[Problem]:
     found = []
     for check in CHECKS:
         problems = check(known)
@@ -105,4 +111,5 @@ CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     *FIELD_CHECKS,
     *LAYER_CHECKS,
     *CORRELATION_CHECKS,
+    *UNCERTAIN_CHECKS,
 ]
