@@ -167,7 +167,7 @@ class Worker:
         from rfmpm import realisation
 
         started, prepared = time.perf_counter(), self.prepared[task.level]
-        options = planning.options_of(prepared, task.level, task.realisation, task.xi)
+        options = planning.run_options(prepared, task.level, task.realisation, task.xi)
         try:
             return realisation.run(prepared, task.realisation, watch=self.stop.abandon_if_requested, **options)
         except Exception as failure:

@@ -82,7 +82,9 @@ class Contributions:
         freedom = np.array([max(np.sum(self.stratum == s) - 1, 1) for s in strata], float)
         total = parts.sum(axis=0)
         share = parts / np.where(total > 0.0, total, 1.0)
-        return np.where(total > 0.0, 1.0 / np.maximum(np.sum(share**2 / freedom[:, None], axis=0), 1e-12), freedom.sum())
+        return np.where(
+            total > 0.0, 1.0 / np.maximum(np.sum(share**2 / freedom[:, None], axis=0), 1e-12), freedom.sum()
+        )
 
     def expectation(self, confidence: float, is_probability: bool) -> Expectation:
         """Return the estimates with their intervals.
