@@ -1,11 +1,13 @@
 """From a study to who answers it: its question, its estimator and its levels; and from rows to what these see."""
 
 from collections.abc import Mapping
+from dataclasses import replace
+from math import isnan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rfmpm.estimators.monte_carlo import MonteCarlo
+from rfmpm.estimators.monte_carlo import Estimate, MonteCarlo
 from rfmpm.estimators.protocol import Estimator
 from rfmpm.estimators.question import Question
 from rfmpm.estimators.rows import Rows
@@ -60,10 +62,46 @@ def question_of(study) -> Question:
     )
 
 
+def answer(study, rows: Rows) -> Estimate:
+    """Answer a study's question.
+
+    Args:
+        study: the study.
+        rows: of its campaign.
+
+    Returns:
+        The estimate with its interval.
+    """
+    return estimator_of(study).estimate(rows)
+
+
+def answer_lines(study, found: Estimate) -> list[str]:
+    """Say an answer in words: the estimate and its interval; how near that is to what was wanted; what to know of it.
+
+    Args:
+        study: the study.
+        found: the answer to its question.
+
+    Returns:
+        Lines of text.
+    """
+    question = question_of(study)
+    plain_question = replace(question, half_width=None, relative_half_width=None)
+    interval = f"{100.0 * found.confidence:.0f} % interval {found.lower:.4g} to {found.upper:.4g}"
+    unit = "" if question.kind == "exceedance" else f" {_unit(question.quantity)}"
+    value = "unknown" if isnan(found.value) else f"= {found.value:.4g}{unit}"
+    basis = f"{found.n} realisations on the study's own cells"
+    lines = [f"{in_words(plain_question)} {value}, {interval}{unit} ({found.method}; {basis})"]
+    if question.is_open_ended and question.excess(found) > 1.0:
+        half = 0.5 * (found.upper - found.lower)
+        wanted = in_words(question).removeprefix(f"{in_words(plain_question)} ")
+        lines.append(f"not known {wanted}, as was asked, but {half:.3g}{unit}: study.until.at_most ended it")
+    return lines + ([found.note] if found.note else [])
+
+
 def in_words(question: Question) -> str:
     """Say a question in words: "P(run-out > 5 m) to within 0.05"."""
-    variable = VARIABLES[question.quantity]
-    name, unit = _name(question.quantity), {"m3 m-1": "m3/m"}.get(variable.unit, variable.unit)
+    name, unit = _name(question.quantity), _unit(question.quantity)
     if question.kind == "exceedance":
         words, unit = f"P({name} > {question.limit:g} {unit})", ""
     elif question.kind == "quantile":
@@ -79,6 +117,11 @@ def in_words(question: Question) -> str:
 
 def _name(quantity: str) -> str:
     return {"run_out": "run-out"}.get(quantity, quantity.replace("_", " "))
+
+
+def _unit(quantity: str) -> str:
+    unit = VARIABLES[quantity].unit
+    return {"m3 m-1": "m3/m"}.get(unit, unit)
 
 
 def estimator_of(study) -> Estimator:
@@ -213,6 +256,23 @@ def rows_of(study, dataset: "xr.Dataset") -> Rows:
 def on_own_cells(dataset: "xr.Dataset") -> "xr.Dataset":
     """Restrict the dataset of a campaign to the study's own cells: level 0, one row for each realisation."""
     return dataset.isel(realisation=np.flatnonzero(dataset["level"].values == 0))
+
+
+def with_own_bins(row: dict[str, Any], study) -> dict[str, Any]:
+    """Cut the surface of a row to the bins of the study's own cells; coarser ones may reach a little further.
+
+    Args:
+        row: of one simulation.
+        study: of the campaign.
+
+    Returns:
+        The row.
+    """
+    if study.output.surface_bin_m is None or np.ndim(row["final_surface"]) == 0:
+        return row
+    from rfmpm.results.row_files import bin_positions
+
+    return row | {"final_surface": row["final_surface"][: len(bin_positions(study))]}
 
 
 def run_options(prepared, level: int, index: int, xi: np.ndarray | None) -> dict[str, Any]:

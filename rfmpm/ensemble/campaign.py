@@ -180,6 +180,8 @@ class Campaign:
             self.done += self.books.done
             self.again = self.again[[code in self.desk.todo or code not in ran for code in self.again.tolist()]]
             self._look()
+            if self.total > ran.total:
+                self.journal.write("plan", realisations=self.total, todo=len(self.todo), **self.outlook.as_entry())
             idle = 0 if self.found.count > before else idle + 1
             if stopped_by and self.todo:
                 self._interrupt(stopped_by, losses)

@@ -56,11 +56,7 @@ class Outlook:
         """What status.json says of it; numbers that are not finite are None, which JSON has."""
         if not self.question:
             return {}
-        names = ("value", "lower", "upper", "confidence", "n")
-        found = None if self.estimate is None else {name: float(getattr(self.estimate, name)) for name in names}
-        if found is not None:
-            found = {name: number if isfinite(number) else None for name, number in found.items()}
-        return {"question": self.question, "estimate": found, "expected": self.expected}
+        return {"question": self.question, "estimate": _plain(self.estimate), "expected": self.expected}
 
 
 class FixedCourse:
@@ -153,6 +149,13 @@ class OpenCourse:
         level, index = np.divmod(places["code"], codes.LEVEL)
         outcome = places["value"], places["is_censored"], places["step_count"]
         return planning.as_rows(level, index, *outcome, self.points)
+
+
+def _plain(found: Estimate | None) -> dict[str, float | None] | None:
+    if found is None:
+        return None
+    numbers = {name: float(getattr(found, name)) for name in ("value", "lower", "upper", "confidence")}
+    return {name: number if isfinite(number) else None for name, number in numbers.items()} | {"n": int(found.n)}
 
 
 def gaps(wanted: range, have: np.ndarray) -> Iterator[range]:

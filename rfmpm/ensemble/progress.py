@@ -56,7 +56,7 @@ class Progress:
         self.is_complete = self.before + done == self.total
         if sys.stderr.isatty():
             self._show_bar(done, failed)
-        elif self.is_complete or time.monotonic() - self.last_line >= LINE_EVERY:
+        elif (self.is_complete and self.expected is None) or time.monotonic() - self.last_line >= LINE_EVERY:
             self.last_line = time.monotonic()
             print(self.line(done, failed), file=sys.stderr, flush=True)
 

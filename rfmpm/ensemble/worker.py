@@ -169,7 +169,8 @@ class Worker:
         started, prepared = time.perf_counter(), self.prepared[task.level]
         options = planning.run_options(prepared, task.level, task.realisation, task.xi)
         try:
-            return realisation.run(prepared, task.realisation, watch=self.stop.abandon_if_requested, **options)
+            row = realisation.run(prepared, task.realisation, watch=self.stop.abandon_if_requested, **options)
+            return row if task.level == 0 else planning.with_own_bins(row, self.study)
         except Exception as failure:
             return self._crashed(task, described(failure), started)
 
