@@ -46,8 +46,8 @@ def sweep(
         settings = settings.with_changes({"study.realisations": realisations})
     if settings.study.until is not None or settings.estimator is not None:
         end(
-            "sweep: the cells of a grid are compared on equal, independent realisations: give study.realisations instead "
-            "of study.until, and leave [estimator] out",
+            "sweep: the cells of a grid are compared on the same, independent realisations: give study.realisations "
+            "instead of study.until, and leave [estimator] out",
             WRONG_STUDY,
         )
     grid = cells(settings, axes)

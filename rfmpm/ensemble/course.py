@@ -3,12 +3,13 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil, inf, isfinite
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from rfmpm import planning
-from rfmpm.ensemble import codes
+from rfmpm.ensemble import codes, segments
 from rfmpm.ensemble.finished import Finished
 from rfmpm.estimators.monte_carlo import Estimate
 from rfmpm.estimators.rows import Rows
@@ -145,10 +146,31 @@ class OpenCourse:
             done = Position(done, present, (), None).planned()
 
     def _rows(self, found: Finished, done: np.ndarray) -> Rows:
-        places = found.at(done)
-        level, index = np.divmod(places["code"], codes.LEVEL)
-        outcome = places["value"], places["is_censored"], places["step_count"]
-        return planning.as_rows(level, index, *outcome, self.points)
+        return _as_rows(found.at(done), self.points)
+
+
+def _as_rows(places: np.ndarray, points: np.ndarray) -> Rows:
+    level, index = np.divmod(places["code"], codes.LEVEL)
+    outcome = places["value"], places["is_censored"], places["step_count"]
+    return planning.as_rows(level, index, *outcome, points)
+
+
+def rows_on_record(directory: Path, study) -> Rows:
+    """Read what a folder holds of a campaign, complete or not, as estimators see it; changes nothing.
+
+    Args:
+        directory: of the campaign.
+        study: of the campaign.
+
+    Returns:
+        The rows.
+
+    Raises:
+        FolderMismatch: if the rows were made by another study or another version of the sources.
+        RowsDiffer: if two rows of one realisation are not the same.
+    """
+    found = segments.finished(directory, study, None)
+    return _as_rows(found.at(found.codes), planning.point_counts(study))
 
 
 def _plain(found: Estimate | None) -> dict[str, float | None] | None:
