@@ -33,7 +33,7 @@ def fit(y: np.ndarray, x: np.ndarray | None, features: np.ndarray | None) -> Fit
     y = y - y.mean(axis=0)
     x = np.zeros_like(y) if x is None else x - x.mean(axis=0)
     if features is None or not features.shape[1]:
-        return Fit(_slope(x, x, y), np.zeros((0, y.shape[1])))
+        return Fit(_ratio(np.sum(x * y, axis=0), np.sum(x * x, axis=0)), np.zeros((0, y.shape[1])))
     left, singular, right = np.linalg.svd(features - features.mean(axis=0), full_matrices=False)
     along_y, along_x = left.T @ y, left.T @ x
     best = np.full(y.shape[1], np.inf)
@@ -46,16 +46,12 @@ def fit(y: np.ndarray, x: np.ndarray | None, features: np.ndarray | None) -> Fit
         along = along_y - now * along_x
         square = np.sum((y - now * x) ** 2, axis=0) - np.sum((1.0 - (1.0 - keep) ** 2) * along**2, axis=0)
         freedom = len(y) - 1.0 - (weighted > 0.0) - keep.sum()
-        score = np.where(freedom > 0.0, np.maximum(square, 0.0) / max(freedom.max(), 1e-9) ** 2, np.inf)
+        score = np.where(freedom > 0.0, np.maximum(square, 0.0) / np.maximum(freedom, 1e-9) ** 2, np.inf)
         better = score < best
         best = np.where(better, score, best)
         slope = np.where(better, now, slope)
         shrunk = np.where(better, (singular / (singular**2 + penalty))[:, None] * along, shrunk)
     return Fit(slope, right.T @ shrunk)
-
-
-def _slope(x: np.ndarray, weights: np.ndarray, y: np.ndarray) -> np.ndarray:
-    return _ratio(np.sum(weights * y, axis=0), np.sum(weights * x, axis=0))
 
 
 def _ratio(product: np.ndarray, square: np.ndarray) -> np.ndarray:
