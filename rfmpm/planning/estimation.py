@@ -3,6 +3,7 @@
 from rfmpm.estimators import ControlVariate, Estimate, MonteCarlo, Multilevel, Replicated, Rows
 from rfmpm.estimators.protocol import Estimator
 from rfmpm.planning.questions import question_of
+from rfmpm.study.question_checks import saltelli_size
 
 NOT_DIVISIBLE = (
     "only a study with a fixed number of independent realisations can be run in parts: one with study.realisations, "
@@ -28,7 +29,10 @@ def estimator_of(study) -> Estimator:
     if table is None or (table.method == "monte_carlo" and table.sampling == "random"):
         return MonteCarlo(question, number)
     if table.method == "monte_carlo":
-        return Replicated(question, table.replicate_size, number)
+        size = table.replicate_size
+        if table.sampling == "saltelli":  # base points are the independent ones
+            size = saltelli_size(len(study.uncertain), bool(study.random_field))
+        return Replicated(question, size, number)
     levels = len(table.coarser_cells_m or ())
     if table.method == "multilevel":
         return Multilevel(question, levels, number)

@@ -7,7 +7,10 @@ from pathlib import Path
 from typing import Any
 
 # Sources a row depends on; a change in any of them may change its bits.
-PHYSICS = ("kernel_tools", "mpm", "random_fields", "quantities", "observer.py", "realisation.py", "seeds.py")
+PHYSICS = (
+    *("kernel_tools", "mpm", "random_fields", "quantities", "stability", "observer.py"),
+    *("preparation.py", "realisation.py", "seeds.py", "uncertainty.py"),
+)
 LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4")
 
 
