@@ -61,7 +61,8 @@ def estimate(study, ranks: int | None = None) -> dict[str, int | float]:
         realisations that move until `time.end_s`; the rest expects realisations to come to rest as the trial ones do.
         Where a question decides how many there are, those of the campaign are for `realisations_at_most`, or left out
         where that is not known; coarser cells have keys of their own, and the campaign is then `work_s` on the study's
-        own cells, at most. Times are those of processors that do nothing else; `campaign_high_s` includes what else they did in the trial.
+        own cells, at most. Times are those of processors that do nothing else; `campaign_high_s` includes what else
+        they did in the trial.
 
     Raises:
         ValueError: for less than one rank.
