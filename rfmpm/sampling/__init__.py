@@ -4,7 +4,8 @@ from rfmpm.sampling.designs import LatinHypercube, Sobol
 from rfmpm.sampling.directions import Directions
 from rfmpm.sampling.markov_chains import MarkovChains
 from rfmpm.sampling.protocol import Sampler
+from rfmpm.sampling.saltelli import Saltelli
 
 SAMPLERS = {"latin_hypercube": LatinHypercube, "sobol": Sobol}
 
-__all__ = ["SAMPLERS", "Directions", "LatinHypercube", "MarkovChains", "Sampler", "Sobol"]
+__all__ = ["SAMPLERS", "Directions", "LatinHypercube", "MarkovChains", "Saltelli", "Sampler", "Sobol"]

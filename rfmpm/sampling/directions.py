@@ -43,6 +43,18 @@ class Directions:
         """Number of directions that are set."""
         return self.n_scalars + (0 if self.components is None else len(self.components))
 
+    def scores(self, xi: np.ndarray) -> np.ndarray:
+        """Return how far a vector lies along the directions, shape (dimension,) [-].
+
+        Args:
+            xi: shape (n_variables,) [-].
+        """
+        k = self.n_scalars
+        if self.components is None:
+            return xi[:k].copy()
+        with single_blas_thread():
+            return np.concatenate([xi[:k], self.components @ xi[k:]])
+
     def compose(self, index: int, eta: np.ndarray) -> np.ndarray:
         """Return V^T eta + (I - V^T V) times the plain vector of an index: exactly N(0, I) if eta is.
 

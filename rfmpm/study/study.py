@@ -29,6 +29,7 @@ from rfmpm.study.models import (
     Quantities,
     Time,
 )
+from rfmpm.study.question_models import Estimation
 from rfmpm.study.schema import Hint
 from rfmpm.study.uncertain_checks import CAPPED
 from rfmpm.study.uncertain_models import Uncertain
@@ -36,6 +37,7 @@ from rfmpm.study.uncertain_models import Uncertain
 NOT_PHYSICS = (
     ("study", "name"),
     ("study", "realisations"),
+    ("study", "until"),
     ("output", "directory"),
     ("output", "surface_bin_m"),
     ("quantities", "run_out_limit_m"),
@@ -68,6 +70,7 @@ class Study(Table):
     uncertain: tuple[Uncertain, ...] | None = Field(
         None, description="Numbers that are not known exactly, one value for each realisation"
     )
+    estimator: Estimation | None = Field(None, description="How a campaign answers; left out: plain Monte Carlo")
     time: Time
     quantities: Quantities = Quantities()
     output: Output
@@ -94,8 +97,15 @@ class Study(Table):
     def physics_hash(self) -> str:
         """SHA-256 (hex) of everything that a realisation's result depends on; equal for equal physics."""
         content = self.model_dump(exclude_none=True)
+        aim = content["study"].get("until")
         for *tables, key in NOT_PHYSICS:
             (content[tables[0]] if tables else content).pop(key, None)
+        if self.estimator == Estimation():  # plain Monte Carlo, as without the table
+            del content["estimator"]
+        elif self.estimator and self.estimator.method == "subset_simulation":  # its chains run towards the limit
+            content["estimator"]["aim"] = {
+                key: aim[key] for key in aim if key == "quantity" or key.startswith("exceeds")
+            }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
     def to_toml(self) -> str:
@@ -123,7 +133,7 @@ class Study(Table):
         return type(self)(**data)
 
     def with_values(self, values: Sequence[float]) -> "Study":
-        """The study of one realisation: its uncertain numbers have these values, and nothing is uncertain.
+        """The study of one realisation: its uncertain numbers have these values, nothing is uncertain or estimated.
 
         A residual above its peak counts as the peak.
 
@@ -144,7 +154,7 @@ class Study(Table):
                 most = changes.get(f"material.{index}.{peak}", getattr(material, peak, None))
                 if (path in changes or residual in material.model_fields_set) and given > most:
                     changes[path] = most
-        return self.with_changes(changes | {"uncertain": None})
+        return self.with_changes(changes | {"uncertain": None, "estimator": None})
 
     @classmethod
     def json_schema(cls) -> dict:
