@@ -17,9 +17,9 @@ NAMES = {
 MEANINGS = {
     "no_failure": "no soil moves further than the threshold of failure",
     "single_slide": "one mass slides and stays in one piece, or flows apart altogether",
-    "retrogressive": "fails in stages: what fails after the first slide adds more than a tenth to it, or the failed mass "
-    "ends in two or more blocks that stayed whole",
-    "reaches_boundary": "the failure meets the back or the front of the model and might have gone on; how is not told",
+    "retrogressive": "fails in stages: what fails after the first slide adds more than a tenth to it, or the failed "
+    "mass ends in two or more blocks that stayed whole",
+    "reaches_boundary": "the failure meets the back or the front of the model and might have gone on",
 }
 
 
