@@ -198,7 +198,7 @@ COORDINATES = _table(
         "int64",
         "1",
         "index of the realisation",
-        {"comment": "Computed again, bit for bit, by: rfmpm rerun DIR --index INDEX."},
+        {"comment": "Computed again, bit for bit, by: rfmpm rerun DIR --index INDEX [--level LEVEL]."},
     ),
     Variable(
         "level",
@@ -206,7 +206,10 @@ COORDINATES = _table(
         "int32",
         "1",
         "level of the plan",
-        {"comment": "The stream of random numbers depends on (study seed, level, realisation) alone."},
+        {
+            "comment": "On whose cells it was simulated: 0 for the study's own, k for the k-th of its "
+            "estimator.coarser_cells_m. A realisation has the same random numbers on every level."
+        },
     ),
     Variable(
         "x",

@@ -30,7 +30,7 @@ def dataset(rows: Sequence[Mapping[str, Any]], study, attributes: Mapping[str, A
         attributes: further global attributes.
 
     Returns:
-        Dataset sorted by realisation; counts and flags are floats with NaN where a realisation failed.
+        Dataset sorted by level and realisation; counts and flags are floats with NaN where a realisation failed.
 
     Raises:
         KeyError: if a row lacks an active variable.

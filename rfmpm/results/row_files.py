@@ -48,7 +48,7 @@ class StoredRows:
 
 
 def columns(rows: Sequence[Mapping[str, Any]], study) -> Columns:
-    """Turn rows into columns, sorted by realisation.
+    """Turn rows into columns, sorted by level and realisation.
 
     Args:
         rows: one mapping per realisation with every active variable by name, "realisation" and optionally "level" and
@@ -62,7 +62,7 @@ def columns(rows: Sequence[Mapping[str, Any]], study) -> Columns:
         KeyError: if a row lacks an active variable.
         ValueError: if a surface has another number of bins than the domain.
     """
-    rows = sorted(rows, key=lambda row: int(row["realisation"]))
+    rows = sorted(rows, key=lambda row: (int(row.get("level", 0)), int(row["realisation"])))
     found = {
         "realisation": np.array([row["realisation"] for row in rows], _TYPES["realisation"]),
         "level": np.array([row.get("level", 0) for row in rows], _TYPES["level"]),

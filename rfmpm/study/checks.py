@@ -12,6 +12,7 @@ from rfmpm.study.field_checks import FIELD_CHECKS
 from rfmpm.study.known import Known, Unknown, problem
 from rfmpm.study.layer_checks import LAYER_CHECKS
 from rfmpm.study.material_checks import MATERIAL_CHECKS
+from rfmpm.study.question_checks import QUESTION_CHECKS, level_problems
 from rfmpm.study.size_checks import SIZE_CHECKS
 
 LARGEST_CELL_OVER_LENGTH = 1.0  # of a softening length; the transfer itself averages over 0.7 cells
@@ -19,6 +20,11 @@ LARGEST_CELL_OVER_LENGTH = 1.0  # of a softening length; the transfer itself ave
 
 def joint_problems(known: Known) -> list[Problem]:
     """Everything that is wrong between keys, as far as their values are known."""
+    found = _own_problems(known)
+    return found or level_problems(known, _own_problems)
+
+
+def _own_problems(known: Known) -> list[Problem]:
     found = []
     for check in CHECKS:
         problems = check(known)
@@ -105,4 +111,5 @@ CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     *FIELD_CHECKS,
     *LAYER_CHECKS,
     *CORRELATION_CHECKS,
+    *QUESTION_CHECKS,
 ]

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, Strict
 
 from rfmpm.study.kinds import Inclination, Length, NotNegative, Number, Positive, Table, Text, whole
+from rfmpm.study.question_models import LARGEST_COUNT, Question
 from rfmpm.study.schema import Hint
 
 LARGEST_SEED = 2**63 - 1  # what a NetCDF attribute holds
@@ -15,7 +16,15 @@ class Campaign(Table):
 
     name: Text = Field(description="Title of the study")
     seed: Annotated[int, Strict()] = Field(ge=0, le=LARGEST_SEED, description="Seed of every random stream")
-    realisations: Annotated[int, Strict()] = Field(1, ge=1, le=10_000_000, description="Number of realisations")
+    realisations: Annotated[int, Strict(), Field(ge=1, le=LARGEST_COUNT)] | None = Field(
+        None, description="Number of realisations. Default: 1; or give until"
+    )
+    until: Question | None = Field(None, description="A question to be answered, instead of a number of realisations")
+
+    def model_post_init(self, context: object) -> None:
+        """Let a number of realisations that is not given be 1 where no question decides it."""
+        if self.realisations is None and self.until is None:
+            object.__setattr__(self, "realisations", 1)
 
 
 class SlopeGeometry(Table):

@@ -29,11 +29,13 @@ from rfmpm.study.models import (
     Quantities,
     Time,
 )
+from rfmpm.study.question_models import Estimation
 from rfmpm.study.schema import Hint
 
 NOT_PHYSICS = (
     ("study", "name"),
     ("study", "realisations"),
+    ("study", "until"),
     ("output", "directory"),
     ("output", "surface_bin_m"),
     ("quantities", "run_out_limit_m"),
@@ -63,6 +65,7 @@ class Study(Table):
     random_field_correlation: tuple[FieldCorrelation, ...] | None = Field(
         None, description="Correlation between random fields; left out: they are independent"
     )
+    estimator: Estimation | None = Field(None, description="How a campaign answers; left out: plain Monte Carlo")
     time: Time
     quantities: Quantities = Quantities()
     output: Output
@@ -89,8 +92,15 @@ class Study(Table):
     def physics_hash(self) -> str:
         """SHA-256 (hex) of everything that a realisation's result depends on; equal for equal physics."""
         content = self.model_dump(exclude_none=True)
+        aim = content["study"].get("until")
         for *tables, key in NOT_PHYSICS:
             (content[tables[0]] if tables else content).pop(key, None)
+        if self.estimator == Estimation():  # plain Monte Carlo, as without the table
+            del content["estimator"]
+        elif self.estimator and self.estimator.method == "subset_simulation":  # its chains run towards the limit
+            content["estimator"]["aim"] = {
+                key: aim[key] for key in aim if key == "quantity" or key.startswith("exceeds")
+            }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
     def to_toml(self) -> str:

@@ -15,6 +15,7 @@ FLOORS = {
     6.2: ("cost",),
     6: ("ensemble", "report"),
     5.5: ("campaign_status",),
+    5.2: ("planning",),
     5: ("realisation", "results"),
     4.7: ("outcome",),
     4.5: ("observer",),
