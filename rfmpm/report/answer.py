@@ -138,7 +138,7 @@ def _of_the_sample(numbers: Numbers, study):
             f"Of {numbers.held} realisations on record {numbers.used} are used, those before the first missing index: "
             "what is finished beyond it was finished because it was quick, and would bias the answer."
         )
-    if not (study.random_field or getattr(study, "uncertain", None)):
+    if not numbers.is_random:
         yield "Nothing is random in this study: all realisations are the same, and the bounds mean nothing."
     elif numbers.completed == 1:
         yield "A single completed realisation says next to nothing about a probability."

@@ -42,8 +42,6 @@ class Asked:
     quantity: str
     limit: float | None = None  # asks for the probability of exceeding it [m or m3/m]
     quantile: float | None = None  # asks for the value that is not exceeded with this probability [-]
-    half_width: float | None = None  # of the interval that is wanted, in the unit of the answer
-    relative_half_width: float | None = None  # the same, as a share of the answer [-]
 
     @property
     def noun(self) -> str:
@@ -83,27 +81,18 @@ class Asked:
             return AMOUNTS[self.quantity].format(f" in all but the worst {_percent(1.0 - self.quantile)} of cases")
         return AMOUNTS[self.quantity].format(" on average")
 
-    def wanted(self, value: float) -> float | None:
-        """Half width of the interval that is wanted, in the unit of the answer, or None if none is."""
-        if self.relative_half_width is not None:
-            return self.relative_half_width * abs(value)
-        return self.half_width
-
 
 def _percent(share: float) -> str:
     return f"{words.number(100.0 * share, 2)} %"
 
 
-def asked(study) -> Asked:
-    """Read the question of a study; where it has none, the probability that the run-out exceeds its limit.
+def asked(question) -> Asked:
+    """Turn a question of estimators into one that can be said.
 
     Args:
-        study: the Study.
+        question: a Question.
 
     Returns:
-        The question.
+        The same question.
     """
-    until = getattr(study.study, "until", None)
-    if until is None:
-        return Asked("run_out", limit=float(study.quantities.run_out_limit_m))
-    return Asked(until.quantity, until.limit, until.quantile, until.width, until.relative_half_width)
+    return Asked(question.quantity, question.limit, question.probability)

@@ -28,19 +28,19 @@ class Budget:
         return self.discretisation is not None
 
 
-def budget(answer: Estimate, completed: Estimate, discretisation: float | None, asked: Asked) -> Budget:
+def budget(answer: Estimate, ordinary: Estimate, discretisation: float | None, asked: Asked) -> Budget:
     """Put the parts together.
 
     Args:
         answer: the estimate with its interval, failed and censored realisations as bounds.
-        completed: the estimate had there been the completed realisations alone.
+        ordinary: the estimate had the failed and censored realisations come to an ordinary end.
         discretisation: half width of the error of the cells, in the unit of the answer; None if it is unknown.
         asked: the question.
 
     Returns:
         Budget; its bounds add the error of the cells to the interval, which is never too narrow.
     """
-    sampling = 0.5 * (completed.upper - completed.lower)
+    sampling = 0.5 * (ordinary.upper - ordinary.lower)
     half = 0.5 * (answer.upper - answer.lower)
     failed = half - sampling if np.isfinite(half - sampling) else (np.inf if np.isfinite(sampling) else 0.0)
     shift = discretisation or 0.0
@@ -58,11 +58,13 @@ class Standing:
     asked: Asked
     answer: Estimate
     budget: Budget
+    is_random: bool  # whether realisations differ
     used: int
     completed: int
     beyond: int  # completed members beyond the limit (0 unless a probability is asked)
     at_back: int  # slides that met the edge behind the crest
     at_front: int  # slides that met the far wall
+    wanted: float  # half width that the question wants, in the unit of the answer; infinite if none
 
 
 def next_steps(standing: Standing, study) -> list[str]:
@@ -78,7 +80,7 @@ def next_steps(standing: Standing, study) -> list[str]:
     s = standing
     if not s.completed:
         return ["Find out why the simulations fail; the reasons are listed below."]
-    if not (study.random_field or getattr(study, "uncertain", None)):
+    if not s.is_random:
         return ["Say how the strength varies: a table [random_field.cohesion] in the study file."]
     steps = [_enlarge(s, study), _repair(s), _more(s), _cells(s, study)]
     return [step for step in steps if step][:2]
@@ -103,9 +105,9 @@ def _repair(s: Standing) -> str:
 
 
 def _more(s: Standing) -> str:
-    half, wanted = s.budget.sampling, s.asked.wanted(s.answer.value)
-    if wanted and half > wanted and np.isfinite(half):
-        needed = s.used * (half / wanted) ** 2
+    half = s.budget.sampling
+    if 0.0 < s.wanted < half < np.inf:
+        needed = s.used * (half / s.wanted) ** 2
         return f"Run on: about {words.number(needed, 2)} simulations in all would give the precision asked for."
     if s.asked.is_probability and s.beyond < FEW:
         needed = max(FEW * s.used / max(s.beyond, 1), 10.0 * FEW)
@@ -123,10 +125,10 @@ def _or_rare(s: Standing) -> str:
 def _cells(s: Standing, study) -> str:
     if s.budget.discretisation is None:
         cell, coarser = _pair_of_cells(study)
-        own = "" if cell == study.discretisation.cell_m else f"discretisation.cell_m = {cell:g} with "
+        own = "" if cell == study.discretisation.cell_m else f"discretisation.cell_m = {cell:g}, "
         return (
-            f"Learn what the size of the cells adds: {own}coarser_cells_m = [{coarser:g}] with "
-            'method = "multilevel" in [estimator], until in [study]; the coarser simulations are cheap.'
+            f"Learn what the size of the cells adds: in the study file, {own}coarser_cells_m = [{coarser:g}] and "
+            'method = "multilevel" in [estimator]; the coarser simulations are cheap.'
         )
     if s.budget.discretisation > s.budget.sampling:
         return (

@@ -34,7 +34,7 @@ def write(directory: Path | str, out: Path | str | None = None, simulate: snapsh
     study_file = directory / "study.toml"
     study = load_study(study_file)
     numbers = analyse(dataset, study)
-    simulate = simulate or snapshots.simulator(study)
+    simulate = simulate or snapshots.simulator(study, dataset)
     states = snapshots.take(_to_picture(numbers), directory / "snapshots", study.physics_hash, simulate)
     page = Path(out) if out is not None else directory / "report.html"
     html = _page(dataset, study, numbers, states, study_file.read_text(encoding="utf-8"))

@@ -9,7 +9,7 @@ CENSORED_BY = {  # what marks a value of a quantity as a lower bound
     "retrogression_distance": ("retrogression_censored",),
     "influence_distance": ("run_out_censored", "retrogression_censored"),
     "failure_volume": ("retrogression_censored",),
-    "initial_failure_volume": ("retrogression_censored",),
+    "initial_failure_volume": (),
 }
 
 
@@ -29,7 +29,7 @@ def usable(dataset, study=None):
     if np.any(np.diff(indices) < 0):
         dataset = dataset.sortby("realisation")
     count = estimators.contiguous_prefix(indices - first_index(dataset))
-    design = getattr(study, "estimator", None)
+    design = None if study is None else study.estimator
     if design is not None and design.method == "subset_simulation":
         count = min(count, design.level_size)
     return dataset.isel(realisation=slice(count))

@@ -8,6 +8,7 @@ import numpy as np
 from rfmpm import estimators
 from rfmpm.estimators.curves import Band
 from rfmpm.estimators.intervals import clopper_pearson
+from rfmpm.report.answering import Answers, Discretisation
 from rfmpm.report.asked import Asked, asked
 from rfmpm.report.budget import Budget, Standing, budget, next_steps
 from rfmpm.report.costs import cost
@@ -29,7 +30,10 @@ class Numbers:
     asked: Asked
     answer: estimators.Estimate
     budget: Budget
+    discretisation: Discretisation | None
     next_steps: list[str]
+    is_random: bool  # whether realisations differ
+    is_plain: bool  # whether they are independent and all on the study's own cells
     held: int  # rows in the dataset, on the study's own cells
     first: int  # index of the first row: 0 but in a part of a study
     used: int  # rows the estimates rest on: indices from the first on without a gap
@@ -53,6 +57,7 @@ class Numbers:
     curve: Band | None  # P(quantity asked > l) over l [m or m3/m]
     running_mean: Band  # of the quantity asked, over the number of realisations [m or m3/m]
     running_exceedance: Band | None  # over the number of realisations [-]
+    settling: Band | None  # the answer over the number of realisations, where it is not made of independent ones alone
     inundation_depth: float  # [m]
     inundation: Band | None  # probability over the distance beyond the toe [m]
 
@@ -67,11 +72,11 @@ def analyse(dataset, study) -> Numbers:
     Returns:
         Numbers.
     """
-    rows, question = usable(dataset, study), asked(study)
+    rows, answers = usable(dataset, study), Answers(dataset, study, CONFIDENCE)
     return Numbers(
-        **_answers(rows, study, question),
-        **_of_run_out(rows, study),
-        **_curves(rows, study, question),
+        **_answer(rows, study, answers),
+        **_of_run_out(rows, study, answers),
+        **_curves(rows, study, answers),
         held=int(np.sum(dataset["level"].values == 0)),
         first=first_index(dataset),
         modes=modes(rows, CONFIDENCE),
@@ -84,43 +89,52 @@ def analyse(dataset, study) -> Numbers:
     )
 
 
-def _answers(rows, study, question: Asked) -> dict:
+def _answer(rows, study, answers: Answers) -> dict:
     """The answer, its error and what to do next."""
+    question = asked(answers.question)
     values, censored = rows[question.quantity].values, censored_members(rows, question.quantity)
     completed = ~np.isnan(values)
-    answer = _estimate(values, censored, question)
-    parts = budget(answer, _estimate(values[completed], None, question), None, question)
+    answer, cells = answers.estimate(answers.rows), answers.discretisation()
+    parts = budget(answer, answers.without_failures(), cells and cells.error, question)
     beyond = (values > question.limit) | censored if question.is_probability else np.zeros(values.size, bool)
-    at_back = int(np.sum(flagged(rows, "retrogression_censored") & completed))
-    at_front = int(np.sum(flagged(rows, "run_out_censored") & completed))
     counts = {"used": values.size, "completed": int(completed.sum()), "beyond": int(np.sum(beyond & completed))}
-    standing = Standing(question, answer, parts, at_back=at_back, at_front=at_front, **counts)
-    steps = next_steps(standing, study)
-    found = {"asked": question, "answer": answer, "budget": parts, "next_steps": steps, "at_back": at_back}
-    return found | counts
+    standing = Standing(
+        question,
+        answer,
+        parts,
+        is_random=bool(study.random_field or getattr(study, "uncertain", None)),
+        at_back=int(np.sum(flagged(rows, "retrogression_censored") & completed)),
+        at_front=int(np.sum(flagged(rows, "run_out_censored") & completed)),
+        wanted=answers.question.wanted_half_width(answer.value),
+        **counts,
+    )
+    return counts | {
+        "asked": question,
+        "answer": answer,
+        "budget": parts,
+        "discretisation": cells,
+        "next_steps": next_steps(standing, study),
+        "is_random": standing.is_random,
+        "is_plain": answers.is_plain,
+        "at_back": standing.at_back,
+    }
 
 
-def _estimate(values: np.ndarray, censored: np.ndarray | None, question: Asked) -> estimators.Estimate:
-    if question.limit is not None:
-        return estimators.exceedance(values, question.limit, censored, CONFIDENCE)
-    if question.quantile is not None:
-        return estimators.quantile(values, question.quantile, censored, CONFIDENCE)
-    return estimators.mean(values, CONFIDENCE, censored)
-
-
-def _of_run_out(rows, study) -> dict:
+def _of_run_out(rows, study, answers: Answers) -> dict:
     """What is said of the run-out, whatever the question."""
     run_out, censored = rows["run_out"].values, censored_members(rows)
-    limit = float(study.quantities.run_out_limit_m)
-    volume = rows["failure_volume"].values
+    limit, volume = float(study.quantities.run_out_limit_m), rows["failure_volume"].values
     fails = (volume > 0.0) | np.isnan(run_out)  # what did not complete may have failed: it counts both ways
+    every = answers.rows_of("run_out")
+    ask = {"quantity": "run_out", "limit": limit, "probability": None}
     return {
         "limit": limit,
-        "mean_run_out": estimators.mean(run_out, CONFIDENCE, censored),
-        "exceedance": estimators.exceedance(run_out, limit, censored, CONFIDENCE),
-        "failing": estimators.exceedance(volume, 0.0, censored, CONFIDENCE),
+        "mean_run_out": answers.estimate(every, **ask | {"kind": "mean"}),
+        "exceedance": answers.estimate(every, **ask | {"kind": "exceedance"}),
+        "failing": answers.estimate(answers.rows_of("failure_volume"), **ask | {"kind": "exceedance", "limit": 0.0}),
         "quantiles": {
-            name: estimators.quantile(run_out, p, censored, CONFIDENCE) for name, p in (("median", 0.5), ("p95", 0.95))
+            name: answers.estimate(every, **ask | {"kind": "quantile", "probability": p})
+            for name, p in (("median", 0.5), ("p95", 0.95))
         },
         "given_failure": {
             "exceedance": estimators.exceedance(run_out[fails], limit, censored[fails], CONFIDENCE),
@@ -130,16 +144,18 @@ def _of_run_out(rows, study) -> dict:
     }
 
 
-def _curves(rows, study, question: Asked) -> dict:
+def _curves(rows, study, answers: Answers) -> dict:
+    question = answers.question
     values, censored = rows[question.quantity].values, censored_members(rows, question.quantity)
     counts = _thinned(np.arange(1, values.size + 1))
     running = None
-    if question.limit is not None:
+    if question.kind == "exceedance":
         running = estimators.running_exceedance(values, question.limit, censored, CONFIDENCE, counts)
     return {
-        "curve": _curve(values, censored, question),
+        "curve": _curve(values, answers),
         "running_mean": estimators.running_mean(values, CONFIDENCE, counts),
         "running_exceedance": running,
+        "settling": None if answers.is_plain else answers.settling(),
         "inundation_depth": float(study.quantities.inundation_depth_m),
         "inundation": _inundation(rows, study),
     }
@@ -171,13 +187,13 @@ def _pictured(rows) -> list[tuple[str, int, float]]:
     return [(", ".join(names), int(index[at]), float(run_out[at])) for at, names in chosen.items()]
 
 
-def _curve(values: np.ndarray, censored: np.ndarray, question: Asked) -> Band | None:
+def _curve(values: np.ndarray, answers: Answers) -> Band | None:
     """The exceedance curve at its steps, or at so many of them, from 0 to a little beyond the last and the limit."""
     steps = np.unique(values[~np.isnan(values)])
     if not steps.size:
         return None
-    start, end = min(0.0, steps[0]), 1.15 * max(steps[-1], question.limit or 0.0, 1.0)
-    return estimators.exceedance_curve(values, np.unique([start, *_thinned(steps), end]), censored, CONFIDENCE)
+    start, end = min(0.0, steps[0]), 1.15 * max(steps[-1], answers.question.limit or 0.0, 1.0)
+    return answers.curve(np.unique([start, *_thinned(steps), end]))
 
 
 def _inundation(rows, study) -> Band | None:

@@ -29,23 +29,22 @@ class Snapshot:
         return self.found == self.recorded
 
 
-def simulator(study) -> Simulate:
+def simulator(study, dataset) -> Simulate:
     """Make the function that simulates a realisation again; nothing is prepared before its first call.
 
     Args:
         study: the study.
+        dataset: of its campaign; where realisations follow from others, they are read off it.
 
     Returns:
         Function of the index -> x, y, plastic_strain (each of shape (n,)) and run_out (a number).
     """
-    from functools import cache
+    from rfmpm import planning
 
-    from rfmpm import realisation
-
-    prepared = cache(lambda: realisation.prepare(study))
+    replay = planning.Replay(study, planning.rows_of(study, dataset) if planning.has_chains(study) else None)
 
     def simulate(index: int) -> dict[str, np.ndarray]:
-        outcome = realisation.simulate(prepared(), index)
+        outcome = replay.simulate(index)
         return {name: outcome.points[name] for name in KEPT} | {"run_out": outcome.quantities["run_out"]}
 
     return simulate
