@@ -53,9 +53,7 @@ def usable(outcomes: Sequence[np.ndarray]) -> list[int]:
     return chain
 
 
-def terms(
-    outcomes: Sequence[np.ndarray], features: np.ndarray | None, is_probability: bool, is_fitted: bool
-) -> Terms:
+def terms(outcomes: Sequence[np.ndarray], features: np.ndarray | None, is_probability: bool, is_fitted: bool) -> Terms:
     """Evaluate the brackets of every index, with coefficients from the other folds.
 
     Args:

@@ -97,7 +97,9 @@ class LinearEstimator:
         coarse_failed = int((used.is_failed & (used.level > 0)).sum())
         if coarse_failed:
             fate = "average" if is_mean else "exceeding"
-            notes.append(f"{coarse_failed} failed on coarser cells, counted there as {fate}: this does not bias the estimate")
+            notes.append(
+                f"{coarse_failed} failed on coarser cells, counted there as {fate}: this does not bias the estimate"
+            )
         if censored:
             fate = "taken at their value, so the mean is a lower bound" if is_mean else "counted as exceeding"
             notes.append(f"{censored} censored {fate}")

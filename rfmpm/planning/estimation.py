@@ -1,8 +1,7 @@
 """Who answers the question of a study, and who says what its realisations are made of."""
 
-from rfmpm.estimators.monte_carlo import Estimate, MonteCarlo
+from rfmpm.estimators import ControlVariate, Estimate, MonteCarlo, Multilevel, Replicated, Rows
 from rfmpm.estimators.protocol import Estimator
-from rfmpm.estimators.rows import Rows
 from rfmpm.planning.questions import question_of
 
 NOT_DIVISIBLE = (
@@ -24,9 +23,16 @@ def estimator_of(study) -> Estimator:
     Returns:
         The estimator.
     """
-    question = question_of(study)
+    question, table = question_of(study), study.estimator
     number = None if question.is_open_ended else question.at_most
-    return MonteCarlo(question, number)
+    if table is None or (table.method == "monte_carlo" and table.sampling == "random"):
+        return MonteCarlo(question, number)
+    if table.method == "monte_carlo":
+        return Replicated(question, table.replicate_size, number)
+    levels = len(table.coarser_cells_m or ())
+    if table.method == "multilevel":
+        return Multilevel(question, levels, number)
+    return ControlVariate(question, levels, realisations=number)
 
 
 def answer(study, rows: Rows) -> Estimate:

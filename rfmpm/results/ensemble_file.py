@@ -21,7 +21,8 @@ def write_ensemble(
         path: the file; replaced if it exists.
         study: the study its rows belong to.
         total: number of rows.
-        blocks: columns by name, as `columns` makes them and with "origin"; together all rows, sorted by level and realisation.
+        blocks: columns by name, as `columns` makes them and with "origin"; together all rows, sorted by level
+            and realisation.
         attributes: further global attributes.
 
     Returns:

@@ -5,13 +5,14 @@ from copy import deepcopy
 from math import isclose
 
 from rfmpm.study.errors import Problem
-from rfmpm.study.known import Known, problem
-from rfmpm.study.question_models import READERS, reads
+from rfmpm.study.known import Known, path_of, problem
+from rfmpm.study.question_models import DEFAULTS, READERS, reads
 
 UNTIL, OWN = "study.until", "estimator"
 UNIT = {"failure_volume": "m3_per_m", "initial_failure_volume": "m3_per_m"}  # of all others: m
 WIDTHS = ("half_width", "half_width_m", "half_width_m3_per_m", "relative_half_width")
 FIXED = "must be left out together with study.until, which says when to end"
+FEWEST_REPLICATES = 8  # Student's factor is then 2.36; with 4 it is 3.18
 WITH_QUESTION = ("multilevel", "control_variate", "subset_simulation")
 
 
@@ -83,8 +84,11 @@ def _method_has_what_it_needs(known: Known) -> Iterator[Problem]:
         yield problem(known, f"{OWN}.sampling", f'must be "random" where method = "{method}"')
     if method in WITH_QUESTION and not _has_question(known):
         yield problem(known, f"{OWN}.method", "needs a question: give study.until instead of study.realisations")
-    if method in ("multilevel", "control_variate") and not known[f"{OWN}.coarser_cells_m"]:
+    has_coarser = bool(known[f"{OWN}.coarser_cells_m"])
+    if method == "multilevel" and not has_coarser:
         yield problem(known, f"{OWN}.method", "needs coarser_cells_m, such as twice the cells of the study")
+    if method == "control_variate" and not has_coarser and known[f"{OWN}.principal_components"] is None:
+        yield problem(known, f"{OWN}.method", "needs coarser_cells_m or principal_components, or both")
     if method == "subset_simulation" and _has_question(known) and not _asks_for_a_probability(known):
         text = "finds a probability of exceeding: ask for exceeds_m or exceeds_m3_per_m in study.until"
         yield problem(known, f"{OWN}.method", text)
@@ -101,6 +105,15 @@ def _design_is_whole(known: Known) -> Iterator[Problem]:
         below = 1 << (size.bit_length() - 1)
         text = f"must be a power of two for sobol; nearest: {below} or {2 * below}"
         yield problem(known, f"{OWN}.replicate_size", text)
+    least = FEWEST_REPLICATES * (size or DEFAULTS["replicate_size"])
+    key = f"{UNTIL}.at_most" if _has_question(known) else "study.realisations"
+    number = known[key] if _has_question(known) else known[key] or 1
+    if number is not None and number < least:
+        text = f"must be at least {least}: {FEWEST_REPLICATES} replicates of the design, whose scatter tells its error"
+        yield Problem(path_of(key), text, number)
+    elif number is not None and not _has_question(known) and number % (least // FEWEST_REPLICATES):
+        text = f"must be whole replicates of the design, a multiple of {least // FEWEST_REPLICATES}"
+        yield Problem(path_of(key), text, number)
 
 
 def _cells_are_coarser(known: Known) -> Iterator[Problem]:

@@ -64,7 +64,9 @@ class Estimation(Table):
         None, description="Points of one independent randomisation of a design. Default: 64"
     )
     principal_components: Annotated[Count, Field(ge=1, le=10_000)] | None = Field(
-        None, description="Leading components of the fields that a design fixes. Default: 32"
+        None,
+        description="Leading components of the fields that a design fixes (default: 32), or that control_variate takes "
+        "(default: none)",
     )
     level_size: Annotated[Count, Field(ge=10, le=LARGEST_COUNT)] | None = Field(
         None, description="Realisations of one level of subset_simulation. Default: 500"
@@ -76,7 +78,11 @@ class Estimation(Table):
     def model_post_init(self, context: object) -> None:
         """Fill in what the method reads and is not given, without counting it among the given keys."""
         for key, default in DEFAULTS.items():
-            if getattr(self, key) is None and reads(key, self.method, self.sampling):
+            if (
+                getattr(self, key) is None
+                and reads(key, self.method, self.sampling)
+                and self.method != "control_variate"
+            ):
                 object.__setattr__(self, key, default)
 
 
@@ -84,7 +90,7 @@ DEFAULTS = {"replicate_size": 64, "principal_components": 32, "level_size": 500,
 READERS = {
     "coarser_cells_m": ("multilevel", "control_variate"),
     "replicate_size": ("latin_hypercube", "sobol", "saltelli"),
-    "principal_components": ("latin_hypercube", "sobol"),
+    "principal_components": ("latin_hypercube", "sobol", "control_variate"),
     "level_size": ("subset_simulation",),
     "level_probability": ("subset_simulation",),
 }

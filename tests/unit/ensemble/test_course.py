@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from test_finished import write
 
 from rfmpm.ensemble import codes, course, segments
 from rfmpm.estimators.monte_carlo import Estimate
 from rfmpm.estimators.protocol import Runs
-from test_finished import write
 
 LEVEL = codes.LEVEL
 
