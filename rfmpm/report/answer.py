@@ -68,10 +68,13 @@ def certainty(numbers: Numbers, study) -> str:
 def basis(numbers: Numbers) -> str:
     """Say what the answer rests on."""
     failed = numbers.used - numbers.completed
-    sentence = f"{words.count(numbers.used, 'simulated slope')}, each with its own pattern of weak and strong soil"
+    pattern = ", each with its own pattern of weak and strong soil" if numbers.is_random else ""
+    sentence = f"{words.count(numbers.used, 'simulated slope')}{pattern}"
     if numbers.asked.is_probability and numbers.completed:
         exceed = "exceeds" if numbers.beyond == 1 else "exceed"
         sentence += f"; {numbers.beyond} of them {exceed} {numbers.asked.limit:g} {numbers.asked.unit}"
+    if not numbers.is_plain:
+        sentence += "; coarser or chosen ones help the estimate"
     return f"{sentence}; {failed if failed else 'none'} failed to complete."
 
 
@@ -110,6 +113,9 @@ def _share(estimate) -> str:
 
 def _value(estimate) -> str:
     width = estimate.upper - estimate.lower
+    if math.isinf(estimate.upper) and math.isfinite(estimate.lower):
+        value, lower = words.with_unit(estimate.value, "m"), words.with_unit(estimate.lower, "m")
+        return f"{value} (more than {lower} with {100.0 * estimate.confidence:g} % confidence)"
     return f"{words.supported(estimate.value, width, 'm')} ({words.interval(estimate, 'm')})"
 
 

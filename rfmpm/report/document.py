@@ -73,6 +73,7 @@ def _page(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], st
         next_steps=numbers.next_steps,
         background=background(study),
         details=answer.details(numbers),
+        precision=sections.precision(numbers),
         charts=charts(rows, numbers),
         unvarying=unvarying(rows),
         modes=sections.mode_cards(numbers, thumbnails),

@@ -46,6 +46,8 @@ def charts(rows, numbers: Numbers) -> dict[str, list[Picture]]:
 
 
 def _convergences(numbers: Numbers) -> list[Picture]:
+    if numbers.settling is not None:
+        return [_settling(numbers)]
     found = [_running_mean(numbers)]
     return found if numbers.running_exceedance is None else [_running_exceedance(numbers), *found]
 
@@ -127,6 +129,23 @@ def _running_exceedance(numbers: Numbers) -> Picture:
         f"Line of the probability that the {asked.noun} exceeds {asked.limit:g} {asked.unit} against the number of "
         f"realisations, ending at {words.share(band.value[-1])}, with a band that narrows.",
         f"Band: {LEVEL} Clopper-Pearson interval at each number of realisations, failed ones counted both ways.",
+    )
+
+
+def _settling(numbers: Numbers) -> Picture:
+    band, asked = numbers.settling, numbers.asked
+    figure, axes = _convergence(band)
+    unit = asked.answer_unit
+    axes.set(xlabel="realisations on the study's own cells", ylabel=f"answer [{unit}]" if unit else "probability")
+    if asked.is_probability:
+        axes.set_ylim(-0.02, 1.02)
+    last = words.supported(float(band.value[-1]), float(band.upper[-1] - band.lower[-1]), unit)
+    return Picture(
+        "The answer as realisations are added",
+        encode(figure, CHART_DOTS_PER_INCH),
+        f"Line of the answer against the number of realisations on the study's own cells, ending at {last}, with a "
+        "band that narrows.",
+        f"Those on coarser cells are added in the same proportion. Band: {LEVEL} interval of the estimator.",
     )
 
 

@@ -43,6 +43,25 @@ def _share(size: float | None, largest: float) -> float | None:
     return round(100.0 * min(size / largest, 1.0), 1) if largest > 0.0 else (100.0 if math.isinf(size) else 0.0)
 
 
+def precision(numbers: Numbers) -> list[str]:
+    """Say how the answer was found, and what two sizes of cells tell of its error."""
+    if not numbers.completed:
+        return []
+    found = [f"The answer is by {numbers.answer.method.replace('_', ' ')}."]
+    if cells := numbers.discretisation:
+        unit = f" {numbers.asked.answer_unit}".rstrip()
+        side = "higher" if cells.difference >= 0.0 else "lower"
+        found.append(
+            f"{cells.pairs} realisations were simulated on cells of {cells.coarser:g} m too: on cells of "
+            f"{cells.cell:g} m the answer is {words.number(abs(cells.difference), 2)}{unit} {side} (standard error "
+            f"{words.number(cells.standard_error, 2)}). If the error falls in proportion to the size of the cells, it "
+            f"is at most {words.number(cells.error, 2)}{unit} to either side, with the confidence of the bounds."
+        )
+    else:
+        found.append("All realisations were simulated on one size of cells, so the error that this makes is unknown.")
+    return found
+
+
 def mode_cards(numbers: Numbers, pictures: dict) -> list[dict]:
     """Kinds of failure: name, share with its interval, meaning, thumbnail of a typical member (None: no member)."""
     total = numbers.completed
