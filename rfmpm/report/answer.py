@@ -4,6 +4,7 @@ import math
 
 from rfmpm.report import words
 from rfmpm.report.budget import FEW
+from rfmpm.report.members import CENSORED_BY
 from rfmpm.report.numbers import Numbers
 
 SIMULATION = "simulation"
@@ -21,6 +22,8 @@ def headline(numbers: Numbers) -> str:
     asked, answer, whole = numbers.asked, numbers.answer, numbers.budget
     if not numbers.completed:
         return "No realisation completed, so the answer is unknown."
+    if not numbers.is_random:
+        return _same(numbers)
     width, level = whole.upper - whole.lower, f"{100.0 * answer.confidence:g} %"
     topic = asked.topic[0].upper() + asked.topic[1:]
     if width == 0.0:
@@ -36,6 +39,16 @@ def headline(numbers: Numbers) -> str:
         return f"{topic} is {value}: with {level} confidence below {_bound(whole.upper, width, numbers)}."
     bounds = f"{_bound(whole.lower, width, numbers)} and {_bound(whole.upper, width, numbers)}"
     return f"{topic} is {value}: between {bounds} with {level} confidence."
+
+
+def _same(numbers: Numbers) -> str:
+    """Where all realisations are the same one."""
+    asked = numbers.asked
+    found = f"The {asked.noun} is {words.with_unit(numbers.running_mean.value[-1], asked.unit)}"
+    if not asked.is_probability:
+        return f"{found}."
+    verb = "exceeds" if numbers.answer.value > 0.5 else "does not exceed"
+    return f"{found}: it {verb} {asked.limit:g} {asked.unit}."
 
 
 def _certain(numbers: Numbers, topic: str, width: float, level: str) -> str:
@@ -57,6 +70,8 @@ def certainty(numbers: Numbers, study) -> str:
     """Say which errors the bounds of the headline count."""
     if not numbers.completed:
         return ""
+    if not numbers.is_random:
+        return f"What the size of the cells ({study.discretisation.cell_m:g} m) adds is unknown."
     if numbers.budget.is_whole:
         return "The bounds count both the limited number of simulations and the size of the cells."
     return (
@@ -65,7 +80,7 @@ def certainty(numbers: Numbers, study) -> str:
     )
 
 
-def basis(numbers: Numbers) -> str:
+def basis(numbers: Numbers, study) -> str:
     """Say what the answer rests on."""
     failed = numbers.used - numbers.completed
     pattern = ", each with its own pattern of weak and strong soil" if numbers.is_random else ""
@@ -73,8 +88,10 @@ def basis(numbers: Numbers) -> str:
     if numbers.asked.is_probability and numbers.completed:
         exceed = "exceeds" if numbers.beyond == 1 else "exceed"
         sentence += f"; {numbers.beyond} of them {exceed} {numbers.asked.limit:g} {numbers.asked.unit}"
-    if not numbers.is_plain:
-        sentence += "; coarser or chosen ones help the estimate"
+    if numbers.coarser:
+        sentence += f"; {words.count(numbers.coarser, SIMULATION)} on coarser cells support them"
+    if study.estimator is not None and study.estimator.sampling != "random":
+        sentence += f"; their patterns are spread evenly ({study.estimator.sampling.replace('_', ' ')})"
     return f"{sentence}; {failed if failed else 'none'} failed to complete."
 
 
@@ -169,12 +186,22 @@ def _of_its_members(numbers: Numbers, study):
         yield (
             f"In {words.count(numbers.at_back, 'realisation')} of {numbers.completed} the failure reached the back of "
             f"the model{_crest(study)}: with more ground there it might have gone on and brought down more soil."
+            f"{_as_bounds(numbers)}"
         )
     if unfinished:
         yield (
             f"{words.count(unfinished, 'realisation')} had not come to rest at the end of the simulated time; "
             "the values reached by then are used."
         )
+
+
+def _as_bounds(numbers: Numbers) -> str:
+    """What becomes of these members where the quantity asked is cut short by that edge."""
+    if "retrogression_censored" not in CENSORED_BY[numbers.asked.quantity]:
+        return ""
+    if numbers.asked.limit is None and numbers.asked.quantile is None:
+        return " The mean takes what was found and is therefore too low."
+    return " They count as exceeding every value, so the curve does not come down to 0."
 
 
 def _crest(study) -> str:

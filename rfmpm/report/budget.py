@@ -82,8 +82,10 @@ def next_steps(standing: Standing, study) -> list[str]:
         return ["Find out why the simulations fail; the reasons are listed below."]
     if not s.is_random:
         return ["Say how the strength varies: a table [random_field.cohesion] in the study file."]
-    steps = [_enlarge(s, study), _repair(s), _more(s), _cells(s, study)]
-    return [step for step in steps if step][:2]
+    spending = [_more(s), _cells(s, study)]
+    if s.budget.is_whole and s.budget.discretisation > s.budget.sampling:
+        spending.reverse()
+    return [step for step in (_enlarge(s, study), _repair(s), *spending) if step][:2]
 
 
 def _enlarge(s: Standing, study) -> str:

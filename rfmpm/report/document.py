@@ -4,7 +4,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from rfmpm.report import answer, sections, snapshots
+from rfmpm.report import answer, sections, snapshots, words
 from rfmpm.report.costs import WATTS_PER_CORE
 from rfmpm.report.members import usable
 from rfmpm.report.numbers import Numbers, analyse, as_json
@@ -60,6 +60,7 @@ def _page(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], st
     rows = usable(dataset, study)
     slopes, thumbnails = _pictures(study, numbers, states)
     environment = Environment(loader=PackageLoader("rfmpm", "report"), autoescape=True, undefined=StrictUndefined)
+    environment.filters["kept"] = words.kept_together
     return environment.get_template("report.html").render(
         title=study.study.name,
         seed=study.study.seed,
@@ -68,7 +69,7 @@ def _page(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], st
         headline=answer.headline(numbers),
         certainty=answer.certainty(numbers, study),
         parts=sections.error_parts(numbers, study) if numbers.completed else [],
-        basis=answer.basis(numbers),
+        basis=answer.basis(numbers, study),
         warnings=answer.warnings(numbers, study),
         next_steps=numbers.next_steps,
         background=background(study),

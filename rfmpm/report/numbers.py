@@ -34,6 +34,7 @@ class Numbers:
     next_steps: list[str]
     is_random: bool  # whether realisations differ
     is_plain: bool  # whether they are independent and all on the study's own cells
+    coarser: int  # rows on coarser cells
     held: int  # rows in the dataset, on the study's own cells
     first: int  # index of the first row: 0 but in a part of a study
     used: int  # rows the estimates rest on: indices from the first on without a gap
@@ -77,6 +78,7 @@ def analyse(dataset, study) -> Numbers:
         **_answer(rows, study, answers),
         **_of_run_out(rows, study, answers),
         **_curves(rows, study, answers),
+        coarser=int(np.sum(dataset["level"].values > 0)),
         held=int(np.sum(dataset["level"].values == 0)),
         first=first_index(dataset),
         modes=modes(rows, CONFIDENCE),

@@ -36,9 +36,10 @@ def charts(rows, numbers: Numbers) -> dict[str, list[Picture]]:
         Pictures by section: exceedance, spread, convergence, inundation; a section without data is empty.
     """
     with drawing():
-        completed, several = numbers.completed > 0, numbers.completed > 1
+        completed = numbers.completed > 0
+        varied, several = completed and numbers.is_random, numbers.completed > 1 and numbers.is_random
         return {
-            "exceedance": [_exceedance(numbers)] if completed else [],
+            "exceedance": [_exceedance(numbers)] if varied else [],
             "spread": list(histograms(rows)),
             "convergence": _convergences(numbers) if several else [],
             "inundation": [_inundation(numbers)] if completed and numbers.inundation is not None else [],
@@ -74,8 +75,8 @@ def _exceedance(numbers: Numbers) -> Picture:
         f"Falling curve of the probability that the {asked.noun} exceeds a value, with bands. "
         f"The answer is marked: {words.number(numbers.answer.value)}{' ' if asked.answer_unit else ''}"
         f"{asked.answer_unit}.",
-        "Read it upwards from a value. The dark band holds the true probability at one value with "
-        f"{LEVEL} confidence, the light band the whole curve. Marked is the answer with its bounds.",
+        f"With {LEVEL} confidence the dark band holds the true probability at one value, the light band the whole "
+        "curve. Marked is the answer with its bounds.",
     )
 
 
@@ -89,7 +90,7 @@ def _mark_answer(axes, numbers: Numbers) -> None:
         _mark(axes, at, f"{at:g} {asked.unit}", "--")
         axes.errorbar([at], [level], [[level - whole.lower], [whole.upper - level]], **_point())
         return
-    _mark(axes, value, f"{words.number(value)} {asked.unit}", "--")
+    _mark(axes, value, words.supported(value, whole.upper - whole.lower, asked.unit), "--")
     if math.isfinite(whole.upper - whole.lower):
         axes.axvspan(whole.lower, whole.upper, color=VERMILION, alpha=0.15, lw=0)
     if asked.quantile is not None:

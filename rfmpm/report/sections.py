@@ -21,10 +21,8 @@ QUALITY_NAMES = {
 def error_parts(numbers: Numbers, study) -> list[dict]:
     """Parts of the error of the answer: label, size in words and as a share of the largest (None: unknown)."""
     budget, unit = numbers.budget, numbers.asked.answer_unit
-    parts = [
-        ("limited number of simulations", budget.sampling),
-        (f"size of the cells, {study.discretisation.cell_m:g} m", budget.discretisation),
-    ]
+    parts = [("limited number of simulations", budget.sampling)] if numbers.is_random else []
+    parts.append((f"size of the cells, {study.discretisation.cell_m:g} m", budget.discretisation))
     if budget.failed > 0.0:
         parts.append(("failed or cut-off simulations", budget.failed))
     largest = max((size for _, size in parts if size is not None and math.isfinite(size)), default=0.0)

@@ -1,6 +1,7 @@
 """Numbers as people read them: rounded to what the interval supports, with units."""
 
 import math
+import re
 
 
 def number(value: float, digits: int = 3) -> str:
@@ -127,6 +128,11 @@ def energy(joules: float) -> str:
     """Write an energy in the unit that suits it, e.g. "0.22 Wh" or "1.5 kWh"."""
     hours = joules / 3600.0
     return f"{number(hours, 2)} Wh" if hours < 1000.0 else f"{number(hours / 1000.0, 2)} kWh"
+
+
+def kept_together(text: str) -> str:
+    """Keep numbers on one line with the unit that follows them."""
+    return re.sub(r"(\d) (?=(?:m³/m|kPa|m|%)(?:\W|$))", "\\1\N{NO-BREAK SPACE}", text)
 
 
 def count(n: int, noun: str) -> str:
