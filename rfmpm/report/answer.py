@@ -173,10 +173,7 @@ def _of_the_sample(numbers: Numbers, study):
 def _of_its_members(numbers: Numbers, study):
     failed, unfinished = numbers.used - numbers.completed, numbers.statuses.get("not_at_rest", 0)
     if failed and numbers.completed:
-        yield (
-            f"{words.count(failed, 'realisation')} of {numbers.used} did not complete. A mean leaves them out; "
-            "the bounds of a probability count them both as exceeding and as not exceeding."
-        )
+        yield (f"{words.count(failed, 'realisation')} of {numbers.used} did not complete; {_fate(numbers)}.")
     if numbers.censored:
         yield (
             f"In {words.count(numbers.censored, 'realisation')} the soil reached the far wall (censored): counted as "
@@ -193,6 +190,13 @@ def _of_its_members(numbers: Numbers, study):
             f"{words.count(unfinished, 'realisation')} had not come to rest at the end of the simulated time; "
             "the values reached by then are used."
         )
+
+
+def _fate(numbers: Numbers) -> str:
+    """What becomes of the members that failed to complete."""
+    if numbers.asked.limit is None and numbers.asked.quantile is None:
+        return "the mean leaves them out, whatever they would have shown"
+    return "the bounds count them both as exceeding and as not"
 
 
 def _as_bounds(numbers: Numbers) -> str:

@@ -58,7 +58,7 @@ class Numbers:
     curve: Band | None  # P(quantity asked > l) over l [m or m3/m]
     running_mean: Band  # of the quantity asked, over the number of realisations [m or m3/m]
     running_exceedance: Band | None  # over the number of realisations [-]
-    settling: Band | None  # the answer over the number of realisations, where it is not made of independent ones alone
+    settling: Band | None  # the answer over the number of realisations, where no running estimate shows it
     inundation_depth: float  # [m]
     inundation: Band | None  # probability over the distance beyond the toe [m]
 
@@ -157,7 +157,7 @@ def _curves(rows, study, answers: Answers) -> dict:
         "curve": _curve(values, answers),
         "running_mean": estimators.running_mean(values, CONFIDENCE, counts),
         "running_exceedance": running,
-        "settling": None if answers.is_plain else answers.settling(),
+        "settling": None if answers.is_plain and question.kind != "quantile" else answers.settling(),
         "inundation_depth": float(study.quantities.inundation_depth_m),
         "inundation": _inundation(rows, study),
     }

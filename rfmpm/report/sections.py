@@ -45,7 +45,8 @@ def precision(numbers: Numbers) -> list[str]:
     """Say how the answer was found, and what two sizes of cells tell of its error."""
     if not numbers.completed:
         return []
-    found = [f"The answer is by {numbers.answer.method.replace('_', ' ')}."]
+    method = numbers.answer.method.replace("_", " ")
+    found = [f"Estimator: {method}; {words.count(numbers.answer.n, 'realisation')} on the study's own cells."]
     if cells := numbers.discretisation:
         unit = f" {numbers.asked.answer_unit}".rstrip()
         side = "higher" if cells.difference >= 0.0 else "lower"
@@ -69,16 +70,17 @@ def mode_cards(numbers: Numbers, pictures: dict) -> list[dict]:
             "meaning": kinds.MEANINGS[mode.name],
             "count": f"{mode.count} of {total}",
             "share": words.share(mode.value, mode.upper - mode.lower),
-            "interval": words.share_interval(_Interval(mode.lower, mode.upper, numbers.answer.confidence)),
+            "interval": _interval(mode, numbers) if numbers.is_random else "",
             "picture": pictures.get(mode.name),
         }
         for mode in (numbers.modes if total else [])
     ]
 
 
-class _Interval:
-    def __init__(self, lower: float, upper: float, confidence: float):
-        self.lower, self.upper, self.confidence = lower, upper, confidence
+def _interval(mode: kinds.Mode, numbers: Numbers) -> str:
+    width = mode.upper - mode.lower
+    bounds = f"{words.share(mode.lower, width)} to {words.share(mode.upper, width)}"
+    return f"{100.0 * numbers.answer.confidence:g} % interval {bounds}"
 
 
 def reasons(numbers: Numbers) -> dict:
