@@ -97,10 +97,10 @@ def run(
     from rfmpm import report as reporting
 
     typer.echo(f"dataset: {folder / 'ensemble.nc'}")
-    typer.echo(f"report:  {reporting.write(folder)}")
     if settings.study.until is not None:
         for line in planning.answer_lines(settings, planning.answer(settings, planning.rows_of(settings, dataset))):
             typer.echo(line)
+    typer.echo(f"report:  {reporting.write(folder)}")
     if not planning.has_chains(settings):  # their realisations are no fair sample of the slope
         for line in reporting.summary_lines(planning.on_own_cells(dataset), settings):
             typer.echo(line)

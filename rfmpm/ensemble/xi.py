@@ -4,6 +4,7 @@ import numpy as np
 
 from rfmpm import planning
 from rfmpm.ensemble import codes
+from rfmpm.ensemble.folder import WORK
 from rfmpm.ensemble.worker import Worker
 from rfmpm.estimators.rows import Rows
 
@@ -32,7 +33,8 @@ class XiMaker:
         self.rows = rows
         if not self.is_random and self.sampler is None:
             self.worker.prepare([0])
-            self.sampler = planning.sampler_of(self.worker.study, self.worker.prepared[0])
+            prepared, store = self.worker.prepared[0], self.worker.directory / WORK
+            self.sampler = planning.sampler_of(self.worker.study, prepared, store)
 
     def __call__(self, code: int) -> np.ndarray | None:
         """Make the vector of a code, shape (n_variables,) [-]; None where it is drawn from the stream of its index."""

@@ -1,8 +1,17 @@
 """Who answers the question of a study, and who says what its realisations are made of."""
 
+from pathlib import Path
+from typing import TYPE_CHECKING
+
 from rfmpm.estimators import ControlVariate, Estimate, MonteCarlo, Multilevel, Replicated, Rows
 from rfmpm.estimators.protocol import Estimator
+from rfmpm.estimators.subset_simulation import SubsetSimulation
+from rfmpm.planning.components import FieldFeatures, directions_of
 from rfmpm.planning.questions import question_of
+from rfmpm.study.question_checks import saltelli_size
+
+if TYPE_CHECKING:
+    from rfmpm.sampling import Sampler
 
 NOT_DIVISIBLE = (
     "only a study with a fixed number of independent realisations can be run in parts: one with study.realisations, "
@@ -28,11 +37,17 @@ def estimator_of(study) -> Estimator:
     if table is None or (table.method == "monte_carlo" and table.sampling == "random"):
         return MonteCarlo(question, number)
     if table.method == "monte_carlo":
-        return Replicated(question, table.replicate_size, number)
+        size = table.replicate_size
+        if table.sampling == "saltelli":  # base points are the independent ones
+            size = saltelli_size(len(study.uncertain), bool(study.random_field))
+        return Replicated(question, size, number)
+    if has_chains(study):
+        return SubsetSimulation(question, table.level_size, table.level_probability)
     levels = len(table.coarser_cells_m or ())
     if table.method == "multilevel":
         return Multilevel(question, levels, number)
-    return ControlVariate(question, levels, realisations=number)
+    features = FieldFeatures(study) if table.principal_components else None
+    return ControlVariate(question, levels, features, number)
 
 
 def answer(study, rows: Rows) -> Estimate:
@@ -64,14 +79,27 @@ def is_divisible(study) -> bool:
     return study.study.until is None and is_random(study)
 
 
-def sampler_of(study, prepared):
+def sampler_of(study, prepared, store: Path | None = None) -> "Sampler":
     """Make what says the random vectors of a study for which `is_random` is false.
 
     Args:
         study: the study.
         prepared: it, on its own cells.
+        store: folder in which principal components are kept for another start; None keeps them in memory.
 
     Returns:
         The sampler.
+
+    Raises:
+        StudyError: if the fields have too many variables for their principal components to be found.
+        OSError: if the store cannot be written.
     """
-    raise NotImplementedError
+    from rfmpm.sampling import SAMPLERS, MarkovChains, Saltelli
+
+    table, seed, count = study.estimator, study.study.seed, prepared.n_variables
+    if has_chains(study):
+        return MarkovChains(seed, count, estimator_of(study))
+    scalars = len(prepared.uncertain)
+    if table.sampling == "saltelli":
+        return Saltelli(seed, scalars, count)
+    return SAMPLERS[table.sampling](directions_of(study, prepared, store), table.replicate_size)

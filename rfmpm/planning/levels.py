@@ -23,7 +23,7 @@ def studies_by_level(study) -> tuple[Any, ...]:
     """
     coarser = study.estimator.coarser_cells_m if study.estimator else None
     if not coarser:
-        return (study,)
+        return (study.with_changes({"estimator": None}) if study.estimator else study,)
     tables = plain(study)
     return tuple(type(study)(**level_tables(tables, cell)) for cell in (study.discretisation.cell_m, *coarser))
 

@@ -203,6 +203,11 @@ class Time(Table):
     )
 
 
+def _absent_if_false(value: object) -> object:
+    """A wish that is denied is as if it were not there: the study and its hash stay as they are."""
+    return None if value is False else value
+
+
 class Quantities(Table):
     """[quantities]"""
 
@@ -213,6 +218,9 @@ class Quantities(Table):
     block_plastic_strain: Positive = Field(0.2, description="Plastic strain below which a point belongs to a block [1]")
     block_minimum_area_m2: NotNegative = Field(0.5, description="Area below which a block is not counted [m2]")
     run_out_limit_m: NotNegative = Field(5.0, description="The limit l in P(run-out > l) [m]")
+    factor_of_safety: Annotated[Annotated[bool, Strict()] | None, BeforeValidator(_absent_if_false)] = Field(
+        None, description="Whether rows hold the factor of safety of their field, of an undrained slope"
+    )
     inundation_depth_m: Positive = Field(0.1, description="Depth from which a place counts as inundated [m]")
 
 

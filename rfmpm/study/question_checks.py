@@ -13,6 +13,7 @@ UNIT = {"failure_volume": "m3_per_m", "initial_failure_volume": "m3_per_m"}  # o
 WIDTHS = ("half_width", "half_width_m", "half_width_m3_per_m", "relative_half_width")
 FIXED = "must be left out together with study.until, which says when to end"
 FEWEST_REPLICATES = 8  # Student's factor is then 2.36; with 4 it is 3.18
+FEWEST_SUBSETS = 2  # independent subset simulations: their scatter shows what the chains of one do not
 WITH_QUESTION = ("multilevel", "control_variate", "subset_simulation")
 
 
@@ -92,15 +93,20 @@ def _method_has_what_it_needs(known: Known) -> Iterator[Problem]:
     if method == "subset_simulation" and _has_question(known) and not _asks_for_a_probability(known):
         text = "finds a probability of exceeding: ask for exceeds_m or exceeds_m3_per_m in study.until"
         yield problem(known, f"{OWN}.method", text)
-    if (method != "monte_carlo" or sampling != "random") and not known["random_field"]:
+    if sampling == "saltelli" and not known["uncertain"]:
+        yield problem(known, f"{OWN}.sampling", "finds what uncertain numbers matter: add [[uncertain]]")
+    elif (method, sampling) != ("monte_carlo", "random") and not (known["random_field"] or known["uncertain"]):
         key = "method" if method != "monte_carlo" else "sampling"
-        yield problem(known, f"{OWN}.{key}", "has no use where nothing is random: add a random_field")
+        text = "has no use where nothing is random: add a random_field or [[uncertain]]"
+        yield problem(known, f"{OWN}.{key}", text)
 
 
 def _design_is_whole(known: Known) -> Iterator[Problem]:
-    if (chosen := _estimator(known)) is None or not reads("replicate_size", *chosen):
+    if (chosen := _estimator(known)) is None or chosen[1] == "random":
         return
     size = known[f"{OWN}.replicate_size"]
+    if chosen[1] == "saltelli":
+        size = saltelli_size(len(known["uncertain"] or ()), bool(known["random_field"]))
     if chosen[1] == "sobol" and size is not None and size & (size - 1):
         below = 1 << (size.bit_length() - 1)
         text = f"must be a power of two for sobol; nearest: {below} or {2 * below}"
@@ -114,6 +120,26 @@ def _design_is_whole(known: Known) -> Iterator[Problem]:
     elif number is not None and not _has_question(known) and number % (least // FEWEST_REPLICATES):
         text = f"must be whole replicates of the design, a multiple of {least // FEWEST_REPLICATES}"
         yield Problem(path_of(key), text, number)
+
+
+def saltelli_size(numbers: int, has_fields: bool) -> int:
+    """Simulations of one base point of a saltelli design: two, and one for each uncertain number and for the fields."""
+    return 2 + numbers + has_fields
+
+
+def _chains_fit(known: Known) -> Iterator[Problem]:
+    if (chosen := _estimator(known)) is None or chosen[0] != "subset_simulation":
+        return
+    size = known[f"{OWN}.level_size"] or DEFAULTS["level_size"]
+    share = known[f"{OWN}.level_probability"] or DEFAULTS["level_probability"]
+    chains = round(size * share)
+    if chains < 2 or size % chains:
+        text = f"must be a multiple of its product with level_probability, {size * share:.4g}, which must be 2 or more"
+        yield Problem(path_of(f"{OWN}.level_size"), text, size)
+    most = known[f"{UNTIL}.at_most"] if _has_question(known) else None
+    if most is not None and most < FEWEST_SUBSETS * size:
+        text = f"must be at least {FEWEST_SUBSETS * size}: the first levels of {FEWEST_SUBSETS} subset simulations"
+        yield problem(known, f"{UNTIL}.at_most", text)
 
 
 def _cells_are_coarser(known: Known) -> Iterator[Problem]:
@@ -179,5 +205,6 @@ QUESTION_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _keys_are_read,
     _method_has_what_it_needs,
     _design_is_whole,
+    _chains_fit,
     _cells_are_coarser,
 ]

@@ -89,7 +89,7 @@ class Estimation(Table):
 DEFAULTS = {"replicate_size": 64, "principal_components": 32, "level_size": 500, "level_probability": 0.1}
 READERS = {
     "coarser_cells_m": ("multilevel", "control_variate"),
-    "replicate_size": ("latin_hypercube", "sobol", "saltelli"),
+    "replicate_size": ("latin_hypercube", "sobol"),
     "principal_components": ("latin_hypercube", "sobol", "control_variate"),
     "level_size": ("subset_simulation",),
     "level_probability": ("subset_simulation",),

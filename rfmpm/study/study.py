@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from numbers import Integral, Real
 from os import PathLike, fspath
@@ -31,6 +31,8 @@ from rfmpm.study.models import (
 )
 from rfmpm.study.question_models import Estimation
 from rfmpm.study.schema import Hint
+from rfmpm.study.uncertain_checks import CAPPED
+from rfmpm.study.uncertain_models import Uncertain
 
 NOT_PHYSICS = (
     ("study", "name"),
@@ -64,6 +66,9 @@ class Study(Table):
     )
     random_field_correlation: tuple[FieldCorrelation, ...] | None = Field(
         None, description="Correlation between random fields; left out: they are independent"
+    )
+    uncertain: tuple[Uncertain, ...] | None = Field(
+        None, description="Numbers that are not known exactly, one value for each realisation"
     )
     estimator: Estimation | None = Field(None, description="How a campaign answers; left out: plain Monte Carlo")
     time: Time
@@ -126,6 +131,30 @@ class Study(Table):
         if unreachable:
             raise StudyError([str(problem) for problem in unreachable])
         return type(self)(**data)
+
+    def with_values(self, values: Sequence[float]) -> "Study":
+        """The study of one realisation: its uncertain numbers have these values, nothing is uncertain or estimated.
+
+        A residual above its peak counts as the peak.
+
+        Args:
+            values: one for each entry of `uncertain` [unit of its key].
+
+        Returns:
+            The study.
+
+        Raises:
+            StudyError: with everything that is wrong with the study at these values.
+        """
+        changes = {entry.key: float(value) for entry, value in zip(self.uncertain, values, strict=True)}
+        for index, material in enumerate(self.material):
+            for residual in CAPPED:
+                path, peak = f"material.{index}.{residual}", residual.removeprefix("residual_")
+                given = changes.get(path, getattr(material, residual, None))
+                most = changes.get(f"material.{index}.{peak}", getattr(material, peak, None))
+                if (path in changes or residual in material.model_fields_set) and given > most:
+                    changes[path] = most
+        return self.with_changes(changes | {"uncertain": None, "estimator": None})
 
     @classmethod
     def json_schema(cls) -> dict:

@@ -37,7 +37,7 @@ def study():
         ({"study.until": {"quantity": "run_out", "relative_half_width": 0.1}}, "needs at_most too"),
         ({"study.until.half_width": 0.5}, "must be greater than 0 and less than 0.5"),
         ({"study.until.limit_m": 5.0}, "unknown key"),
-        ({"estimator": LEVELS | {"replicate_size": 8}}, "is read by latin_hypercube, sobol, saltelli alone"),
+        ({"estimator": LEVELS | {"replicate_size": 8}}, "is read by latin_hypercube, sobol alone"),
         ({"estimator": {"coarser_cells_m": [0.5]}}, "is read by multilevel, control_variate alone"),
         ({"estimator": {"method": "multilevel"}}, "needs coarser_cells_m"),
         ({"estimator": LEVELS | {"sampling": "sobol"}}, 'must be "random" where method = "multilevel"'),
