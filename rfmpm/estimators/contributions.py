@@ -1,8 +1,8 @@
 """A linear estimate as the sum of what independent units contribute, and the interval that follows from it.
 
-Every estimator here but subset simulation is linear: plain Monte Carlo (a unit is a realisation that adds y / n), designs
-with replicates (a unit is a replicate), several levels (a unit is an index with all its simulations). Units of one
-stratum are identically distributed: on several levels the indices that were simulated on the same levels.
+Every estimator here but subset simulation is linear: plain Monte Carlo (a unit is a realisation that adds y / n),
+designs with replicates (a unit is a replicate), several levels (a unit is an index with all its simulations). Units of
+one stratum are identically distributed: on several levels the indices that were simulated on the same levels.
 """
 
 from dataclasses import dataclass, field
@@ -55,7 +55,7 @@ class Contributions:
         return self.base + self.unit.sum(axis=0)
 
     def deviations(self) -> np.ndarray:
-        """Return the units less the mean of their stratum, scaled so that their squares add up to the variance, (n, k)."""
+        """Return the units less their stratum's mean, scaled so that their squares add up to the variance, (n, k)."""
         deviation = np.empty_like(self.unit)
         for stratum in np.unique(self.stratum):
             here = self.stratum == stratum
