@@ -194,9 +194,10 @@ def _of_its_members(numbers: Numbers, study):
 
 def _fate(numbers: Numbers) -> str:
     """What becomes of the members that failed to complete."""
+    them = "it" if numbers.used - numbers.completed == 1 else "them"
     if numbers.asked.limit is None and numbers.asked.quantile is None:
-        return "the mean leaves them out, whatever they would have shown"
-    return "the bounds count them both as exceeding and as not"
+        return f"the mean leaves {them} out, whatever would have come"
+    return f"the bounds count {them} both as exceeding and as not"
 
 
 def _as_bounds(numbers: Numbers) -> str:

@@ -1,30 +1,21 @@
 """Answers from the rows of a campaign, by the estimator that planned it."""
 
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
+from scipy.special import ndtri
 
 from rfmpm import estimators, planning
 from rfmpm.estimators.curves import Band
+from rfmpm.estimators.discretisation import ASSUMED_ORDER, Discretisation, discretisation
+from rfmpm.estimators.question import Exceedances, Value
 from rfmpm.estimators.rows import Rows
 from rfmpm.report.members import CENSORED_BY, first_index, flagged
 
 FEWEST_PAIRS = 10  # realisations on two levels; with fewer the error of the cells is not estimated
 RESAMPLES = 200
 STEPS = 12  # at which an answer is followed as rows are added
-
-
-@dataclass(frozen=True)
-class Discretisation:
-    """What realisations simulated on two sizes of cells tell of the error of the cells."""
-
-    cell: float  # of the study [m]
-    coarser: float  # [m]
-    pairs: int
-    difference: float  # of the answer, the study's cells less the coarser ones
-    standard_error: float  # of it
-    error: float  # to either side, of the answer on the study's cells, at the level of the interval
 
 
 class Answers:
@@ -87,48 +78,32 @@ class Answers:
         )
 
     def discretisation(self) -> Discretisation | None:
-        """Estimate the error of the cells from the realisations on the study's cells and on the next coarser ones.
-
-        The error is taken to be proportional to the side of the cells, so that of the finer ones is the difference
-        divided by the ratio of the sides less 1; to its size the half width of its normal interval is added.
+        """Estimate the error of the cells from the realisations on the study's cells and on the coarser ones.
 
         Returns:
-            Discretisation; None with fewer than FEWEST_PAIRS such realisations.
-
-        Source: Richardson (1911), Phil. Trans. R. Soc. A 210, 307-357.
+            Discretisation of the answer; None with fewer than FEWEST_PAIRS such realisations.
         """
         coarser = self.study.estimator and self.study.estimator.coarser_cells_m
-        for level, cell in enumerate(coarser or (), 1):
-            fine, coarse = self._pairs(level)
-            if fine[0].size >= FEWEST_PAIRS:
-                from scipy.special import ndtri
+        if not coarser:
+            return None
+        asked, cells = self.question, (self.study.discretisation.cell_m, *coarser)
+        functions = Exceedances(np.array([asked.limit])) if asked.kind == "exceedance" else Value()
+        found = discretisation(self.rows, functions, cells, self.confidence)
+        if found is None or found.n < FEWEST_PAIRS:
+            return None
+        return self._of_quantile(found) if asked.kind == "quantile" else found
 
-                difference, error = self._difference(fine, coarse)
-                ratio = cell / self.study.discretisation.cell_m
-                size = (abs(difference) + ndtri(0.5 + self.confidence / 2.0) * error) / (ratio - 1.0)
-                own = self.study.discretisation.cell_m
-                return Discretisation(own, cell, fine[0].size, difference, error, float(size))
-        return None
-
-    def _pairs(self, level: int):
-        """Values and censored marks of the realisations that completed on both levels."""
-        own, other = (self.rows.on_level(k).where(~self.rows.on_level(k).is_failed) for k in (0, level))
+    def _of_quantile(self, of_mean: Discretisation) -> Discretisation:
+        """The same for the quantile, from pairs on the two finest levels, resampled; first order is assumed."""
+        own, other = (self.rows.on_level(k).where(~self.rows.on_level(k).is_failed) for k in (0, 1))
         _, mine, theirs = np.intersect1d(own.index, other.index, return_indices=True)
-        return (own.value[mine], own.is_censored[mine]), (other.value[theirs], other.is_censored[theirs])
-
-    def _difference(self, fine, coarse) -> tuple[float, float]:
-        """Difference of the answer between paired values, and its standard error."""
-        asked = self.question
-        if asked.kind == "quantile":
-            return _difference_of_quantiles(fine[0], coarse[0], asked.probability)
-        outcomes = [v if asked.kind == "mean" else ((v > asked.limit) | c).astype(float) for v, c in (fine, coarse)]
-        gap = outcomes[0] - outcomes[1]
-        return float(gap.mean()), float(gap.std(ddof=1) / np.sqrt(gap.size))
-
-
-def _difference_of_quantiles(fine: np.ndarray, coarse: np.ndarray, probability: float) -> tuple[float, float]:
-    """Difference of a quantile between paired values, and its standard error by resampling pairs."""
-    generator = np.random.default_rng(0)
-    drawn = generator.integers(fine.size, size=(RESAMPLES, fine.size))
-    resampled = np.quantile(fine[drawn], probability, axis=1) - np.quantile(coarse[drawn], probability, axis=1)
-    return float(np.quantile(fine, probability) - np.quantile(coarse, probability)), float(resampled.std(ddof=1))
+        pairs, p = np.array([own.value[mine], other.value[theirs]]), self.question.probability
+        drawn = np.random.default_rng(0).integers(mine.size, size=(RESAMPLES, mine.size))
+        ratio = of_mean.cells[1] / of_mean.cells[0]
+        error = -float(np.diff(np.quantile(pairs, p, axis=1))[0]) / (ratio - 1.0)
+        scatter = float(np.diff(np.quantile(pairs[:, drawn], p, axis=2), axis=0).std(ddof=1)) / (ratio - 1.0)
+        half = float(ndtri(0.5 + self.confidence / 2.0)) * scatter
+        note = f"order {ASSUMED_ORDER:g} assumed; scatter by resampling"
+        return Discretisation(
+            error, scatter, error - half, error + half, ASSUMED_ORDER, False, of_mean.cells[:2], mine.size, note
+        )

@@ -101,7 +101,8 @@ def _enlarge(s: Standing, study) -> str:
 
 
 def _repair(s: Standing) -> str:
-    if s.used - s.completed and s.budget.failed > s.budget.sampling:
+    failed = s.used - s.completed
+    if failed > max(s.at_back, s.at_front) and s.budget.failed > s.budget.sampling:
         return "Find out why simulations failed: they widen the answer more than the number of simulations does."
     return ""
 

@@ -4,10 +4,13 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+from rfmpm import planning
 from rfmpm.report import answer, sections, snapshots, words
+from rfmpm.report.answering import Answers
 from rfmpm.report.costs import WATTS_PER_CORE
+from rfmpm.report.driving import Drivers, drivers
 from rfmpm.report.members import usable
-from rfmpm.report.numbers import Numbers, analyse, as_json
+from rfmpm.report.numbers import CONFIDENCE, Numbers, analyse, as_json
 from rfmpm.report.question import NAMES, background, setting
 
 
@@ -34,12 +37,14 @@ def write(directory: Path | str, out: Path | str | None = None, simulate: snapsh
     study_file = directory / "study.toml"
     study = load_study(study_file)
     numbers = analyse(dataset, study)
-    simulate = simulate or snapshots.simulator(study, dataset)
+    replay = None if simulate else _replay(dataset, study)
+    driven = drivers(dataset, study, Answers(dataset, study, CONFIDENCE), replay)
+    simulate = simulate or snapshots.simulator(replay)
     states = snapshots.take(_to_picture(numbers), directory / "snapshots", study.physics_hash, simulate)
     page = Path(out) if out is not None else directory / "report.html"
-    html = _page(dataset, study, numbers, states, study_file.read_text(encoding="utf-8"))
+    html = _page(dataset, study, numbers, states, driven, study_file.read_text(encoding="utf-8"))
     snapshots.write_atomically(page, html.encode("utf-8"))
-    numbers_text = json.dumps(_record(dataset, study, numbers, states), indent=1, allow_nan=False)
+    numbers_text = json.dumps(_record(dataset, study, numbers, states, driven), indent=1, allow_nan=False)
     snapshots.write_atomically(page.with_suffix(".json"), numbers_text.encode("utf-8"))
     return page
 
@@ -51,7 +56,12 @@ def _to_picture(numbers: Numbers) -> list[tuple[str, int, float]]:
     return [*numbers.pictured, *(member for member in typical if member[1] not in known)]
 
 
-def _page(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], study_text: str) -> str:
+def _replay(dataset, study) -> planning.Replay:
+    """Makes realisations again; nothing is prepared before the first one."""
+    return planning.Replay(study, planning.rows_of(study, dataset) if planning.has_chains(study) else None)
+
+
+def _page(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], driven: Drivers, study_text: str) -> str:
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     from rfmpm.report.histograms import unvarying
@@ -79,6 +89,7 @@ def _page(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], st
         unvarying=unvarying(rows),
         modes=sections.mode_cards(numbers, thumbnails),
         slopes=slopes,
+        drivers=driven.pictures,
         safety=sections.safety(numbers),
         statuses=[(NAMES.get(name, name), count) for name, count in numbers.statuses.items()],
         reasons=sections.reasons(numbers),
@@ -107,7 +118,7 @@ def _versions(dataset) -> list[tuple[str, str]]:
     return [(name.replace("_", " "), str(value)) for name, value in dataset.attrs.items() if name != "study"]
 
 
-def _record(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot]) -> dict:
+def _record(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], driven: Drivers) -> dict:
     record = {
         "study": study.study.name,
         "question": numbers.asked.sentence,
@@ -124,5 +135,6 @@ def _record(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot]) 
     record["reasons"] = [
         {"realisation": index, "status": status, "reason": reason} for index, status, reason in numbers.reasons
     ]
+    record["sensitivity"] = as_json(driven.numbers)
     record["watts_per_core_assumed"] = WATTS_PER_CORE
     return record | {"provenance": {name: as_json(value) for name, value in dataset.attrs.items()}}

@@ -7,8 +7,9 @@ import numpy as np
 
 from rfmpm import estimators
 from rfmpm.estimators.curves import Band
+from rfmpm.estimators.discretisation import Discretisation
 from rfmpm.estimators.intervals import clopper_pearson
-from rfmpm.report.answering import Answers, Discretisation
+from rfmpm.report.answering import Answers
 from rfmpm.report.asked import Asked, asked
 from rfmpm.report.budget import Budget, Standing, budget, next_steps
 from rfmpm.report.costs import cost
@@ -97,14 +98,14 @@ def _answer(rows, study, answers: Answers) -> dict:
     values, censored = rows[question.quantity].values, censored_members(rows, question.quantity)
     completed = ~np.isnan(values)
     answer, cells = answers.estimate(answers.rows), answers.discretisation()
-    parts = budget(answer, answers.without_failures(), cells and cells.error, question)
+    parts = budget(answer, answers.without_failures(), cells and max(abs(cells.lower), abs(cells.upper)), question)
     beyond = (values > question.limit) | censored if question.is_probability else np.zeros(values.size, bool)
     counts = {"used": values.size, "completed": int(completed.sum()), "beyond": int(np.sum(beyond & completed))}
     standing = Standing(
         question,
         answer,
         parts,
-        is_random=bool(study.random_field or getattr(study, "uncertain", None)),
+        is_random=bool(study.random_field or study.uncertain),
         at_back=int(np.sum(flagged(rows, "retrogression_censored") & completed)),
         at_front=int(np.sum(flagged(rows, "run_out_censored") & completed)),
         wanted=answers.question.wanted_half_width(answer.value),

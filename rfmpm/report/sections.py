@@ -49,12 +49,14 @@ def precision(numbers: Numbers) -> list[str]:
     found = [f"Estimator: {method}; {words.count(numbers.answer.n, 'realisation')} on the study's own cells."]
     if cells := numbers.discretisation:
         unit = f" {numbers.asked.answer_unit}".rstrip()
-        side = "higher" if cells.difference >= 0.0 else "lower"
+        side = "high" if cells.error >= 0.0 else "low"
+        sizes = " and ".join(f"{size:g} m" for size in cells.cells)
         found.append(
-            f"{cells.pairs} realisations were simulated on cells of {cells.coarser:g} m too: on cells of "
-            f"{cells.cell:g} m the answer is {words.number(abs(cells.difference), 2)}{unit} {side} (standard error "
-            f"{words.number(cells.standard_error, 2)}). If the error falls in proportion to the size of the cells, it "
-            f"is at most {words.number(cells.error, 2)}{unit} to either side, with the confidence of the bounds."
+            f"{cells.n} realisations were simulated on cells of {sizes}. By them the answer is "
+            f"{words.number(abs(cells.error), 2)}{unit} too {side} (standard error "
+            f"{words.number(cells.standard_error, 2)}) compared with vanishing cells; the bounds allow for "
+            f"{words.number(max(abs(cells.lower), abs(cells.upper)), 2)}{unit} to either side "
+            f"({cells.note})."
         )
     else:
         found.append("All realisations were simulated on one size of cells, so the error that this makes is unknown.")

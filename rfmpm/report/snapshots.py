@@ -29,19 +29,15 @@ class Snapshot:
         return self.found == self.recorded
 
 
-def simulator(study, dataset) -> Simulate:
-    """Make the function that simulates a realisation again; nothing is prepared before its first call.
+def simulator(replay) -> Simulate:
+    """Make the function that simulates a realisation of a campaign again.
 
     Args:
-        study: the study.
-        dataset: of its campaign; where realisations follow from others, they are read off it.
+        replay: of the campaign.
 
     Returns:
         Function of the index -> x, y, plastic_strain (each of shape (n,)) and run_out (a number).
     """
-    from rfmpm import planning
-
-    replay = planning.Replay(study, planning.rows_of(study, dataset) if planning.has_chains(study) else None)
 
     def simulate(index: int) -> dict[str, np.ndarray]:
         outcome = replay.simulate(index)
