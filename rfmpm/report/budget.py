@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rfmpm.estimators import Estimate
+from rfmpm.estimators.discretisation import Discretisation
 from rfmpm.report import words
 from rfmpm.report.asked import Asked
 
@@ -18,7 +19,9 @@ class Budget:
 
     sampling: float  # half width of the interval that the number of realisations alone would give
     failed: float  # what failed and censored realisations add to it
-    discretisation: float | None  # how far the cells may have moved the answer, to either side; None: unknown
+    discretisation: (
+        float | None
+    )  # how far the cells may have moved the answer, to the side they may more; None: unknown
     lower: float  # of the answer, all known parts together
     upper: float
 
@@ -28,13 +31,13 @@ class Budget:
         return self.discretisation is not None
 
 
-def budget(answer: Estimate, ordinary: Estimate, discretisation: float | None, asked: Asked) -> Budget:
+def budget(answer: Estimate, ordinary: Estimate, cells: Discretisation | None, asked: Asked) -> Budget:
     """Put the parts together.
 
     Args:
         answer: the estimate with its interval, failed and censored realisations as bounds.
         ordinary: the estimate had the failed and censored realisations come to an ordinary end.
-        discretisation: half width of the error of the cells, in the unit of the answer; None if it is unknown.
+        cells: error of the cells, the answer less that of vanishing ones; None if it is unknown.
         asked: the question.
 
     Returns:
@@ -43,12 +46,13 @@ def budget(answer: Estimate, ordinary: Estimate, discretisation: float | None, a
     sampling = 0.5 * (ordinary.upper - ordinary.lower)
     half = 0.5 * (answer.upper - answer.lower)
     failed = half - sampling if np.isfinite(half - sampling) else (np.inf if np.isfinite(sampling) else 0.0)
-    shift = discretisation or 0.0
-    upper = min(answer.upper + shift, 1.0) if asked.is_probability else answer.upper + shift
-    lower = answer.lower - shift
+    down, up = (max(cells.upper, 0.0), max(-cells.lower, 0.0)) if cells else (0.0, 0.0)
+    lower, upper = answer.lower - down, answer.upper + up
     if np.isfinite(lower):
         lower = max(lower, 0.0)  # no quantity is negative
-    return Budget(sampling, max(failed, 0.0), discretisation, lower, upper)
+    if asked.is_probability:
+        upper = min(upper, 1.0)
+    return Budget(sampling, max(failed, 0.0), max(down, up) if cells else None, lower, upper)
 
 
 @dataclass(frozen=True)

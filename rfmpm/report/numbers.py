@@ -9,6 +9,7 @@ from rfmpm import estimators
 from rfmpm.estimators.curves import Band
 from rfmpm.estimators.discretisation import Discretisation
 from rfmpm.estimators.intervals import clopper_pearson
+from rfmpm.quantities.failure_mode import MODES
 from rfmpm.report.answering import Answers
 from rfmpm.report.asked import Asked, asked
 from rfmpm.report.budget import Budget, Standing, budget, next_steps
@@ -22,6 +23,7 @@ QUALITY = ("plastic_work_share", "friction_work_share", "numerical_dissipation_s
 MOST_POINTS = 2000  # of a curve; more would be seen in no picture and make report.json large
 BLOCK = 2**16  # rows whose surfaces are looked at together
 PICTURED = (("median", 0.5), ("95th percentile", 0.95), ("worst", 1.0))
+MOST_PICTURED = len(PICTURED) + len(MODES)  # a typical member of each kind of failure, too
 
 
 @dataclass(frozen=True)
@@ -98,7 +100,7 @@ def _answer(rows, study, answers: Answers) -> dict:
     values, censored = rows[question.quantity].values, censored_members(rows, question.quantity)
     completed = ~np.isnan(values)
     answer, cells = answers.estimate(answers.rows), answers.discretisation()
-    parts = budget(answer, answers.without_failures(), cells and max(abs(cells.lower), abs(cells.upper)), question)
+    parts = budget(answer, answers.without_failures(), cells, question)
     beyond = (values > question.limit) | censored if question.is_probability else np.zeros(values.size, bool)
     counts = {"used": values.size, "completed": int(completed.sum()), "beyond": int(np.sum(beyond & completed))}
     standing = Standing(

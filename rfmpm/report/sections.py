@@ -55,8 +55,8 @@ def precision(numbers: Numbers) -> list[str]:
             f"{cells.n} realisations were simulated on cells of {sizes}. By them the answer is "
             f"{words.number(abs(cells.error), 2)}{unit} too {side} (standard error "
             f"{words.number(cells.standard_error, 2)}) compared with vanishing cells; the bounds allow for "
-            f"{words.number(max(abs(cells.lower), abs(cells.upper)), 2)}{unit} to either side "
-            f"({cells.note})."
+            f"{words.number(max(cells.upper, 0.0), 2)}{unit} downwards and {words.number(max(-cells.lower, 0.0), 2)}"
+            f"{unit} upwards ({cells.note})."
         )
     else:
         found.append("All realisations were simulated on one size of cells, so the error that this makes is unknown.")

@@ -53,7 +53,7 @@ def test_the_page_shows_rows_on_the_study_s_own_cells_and_the_answer_uses_all(st
     own = usable(ensemble, study)["run_out"].values
     plain = np.std(own, ddof=1) / np.sqrt(PAIRS)
     assert numbers.answer.standard_error < plain  # the coarser ones vary alike and are three times as many
-    assert numbers.budget.upper == pytest.approx(numbers.answer.upper + numbers.discretisation.upper, rel=1e-12)
+    assert numbers.budget.lower == pytest.approx(numbers.answer.lower - numbers.discretisation.upper, rel=1e-12)
     assert numbers.settling.value[-1] == numbers.answer.value
     assert numbers.cost["coarser"] == pytest.approx(ensemble["wall_time"].values[PAIRS:].sum(), rel=1e-12)  # identity
 
