@@ -1,4 +1,4 @@
-"""What every linear estimator answers once it can say what its units contribute: estimates, curves, quantiles, ratios."""
+"""What every linear estimator answers once it can say what its units contribute: estimates, curves, quantiles."""
 
 from dataclasses import replace
 
@@ -15,7 +15,7 @@ from rfmpm.estimators.rows import Rows
 
 
 class LinearEstimator:
-    """Answers of an estimator that offers `used(rows)` and `contributions(outcome, rows, is_probability)`."""
+    """Answers of an estimator that offers `used(rows)` and `contributions(outcome, rows, functions)`."""
 
     question: Question
     method: str
@@ -24,13 +24,13 @@ class LinearEstimator:
         """Return the rows that an estimate may rest on: those without a gap before them."""
         raise NotImplementedError
 
-    def contributions(self, outcome: np.ndarray, rows: Rows, is_probability: bool) -> Contributions:
+    def contributions(self, outcome: np.ndarray, rows: Rows, functions: Functions) -> Contributions:
         """Return what the units of the used rows contribute.
 
         Args:
-            outcome: functions of the rows, shape (n, k); NaN where the row failed.
+            outcome: of the functions, shape (n, k); NaN where the row failed.
             rows: as `used` gives them.
-            is_probability: whether the outcomes are 0 or 1.
+            functions: whose expectations are estimated.
         """
         raise NotImplementedError
 
@@ -47,18 +47,16 @@ class LinearEstimator:
         Returns:
             Expectation, arrays of shape (k,).
         """
-        return self._expectation(functions(rows), rows, functions.is_probability)
-
-    def _expectation(self, outcome: np.ndarray, rows: Rows, is_probability: bool) -> Expectation:
         used = self.used(rows)
-        outcome = outcome[_place(used, rows)]
+        outcome = functions(rows)[_place(used, rows)]
         confidence = self.question.confidence
         failed = np.isnan(outcome[:, :1]) & (used.level == 0)[:, None]
-        found = self.contributions(outcome, used, is_probability).expectation(confidence, is_probability)
+        is_probability = functions.is_probability
+        found = self.contributions(outcome, used, functions).expectation(confidence, is_probability)
         if not is_probability or not failed.any():
             return found
         low, high = (
-            self.contributions(np.where(failed, filled, outcome), used, True).expectation(confidence, True)
+            self.contributions(np.where(failed, filled, outcome), used, functions).expectation(confidence, True)
             for filled in (0.0, 1.0)
         )
         lower, upper = np.minimum(low.lower, found.lower), np.maximum(high.upper, found.upper)
@@ -146,8 +144,8 @@ class LinearEstimator:
 
     def _widening(self, rows: Rows, limits: np.ndarray) -> float:
         """Half width of the simultaneous band over that of the pointwise one."""
-        used = self.used(rows)
-        found = self.contributions(Exceedances(limits)(used), used, True)
+        used, functions = self.used(rows), Exceedances(limits)
+        found = self.contributions(functions(used), used, functions)
         return simultaneous_factor(found, self.question.confidence)
 
     def limits(self, rows: Rows, number: int = 200) -> np.ndarray:

@@ -5,15 +5,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rfmpm.estimators.allocation import Allocation, allocate, choose_levels
+from rfmpm.estimators.allocation import Allocation, choose_levels
 from rfmpm.estimators.contributions import Contributions
-from rfmpm.estimators.levels import FOLDS, contributions, usable
-from rfmpm.estimators.question import Exceedances, Question, Value
+from rfmpm.estimators.levels import FOLDS, Nested, contributions
+from rfmpm.estimators.monte_carlo import Estimate
+from rfmpm.estimators.question import Exceedances, Functions, Question, Value
 from rfmpm.estimators.rows import Rows
-from rfmpm.estimators.staged import LEAST_GROWTH, MOST_GROWTH, Staged
+from rfmpm.estimators.staged import LEAST_GROWTH, Staged
 
 PILOT = 32  # indices that are simulated on every level
-FEWEST_TO_SHARE_BY = 5  # exceedances and non-exceedances; with fewer the work is shared by the quantity's own variances
+FEWEST_TO_SHARE_BY = 8  # exceedances and non-exceedances; the work is shared by a limit that has as many
 
 
 class Multilevel(Staged):
@@ -45,8 +46,8 @@ class Multilevel(Staged):
         self.coarser_levels = coarser_levels
         self.pilot = pilot
 
-    def features(self, n: int) -> np.ndarray | None:
-        """Return features of the first n fields with mean 0, shape (n, d); None for none."""
+    def normals(self, n: int) -> np.ndarray | None:
+        """Return independent standard normals of the first n fields, shape (n, d); None for none."""
         return None
 
     def first_numbers(self) -> list[int]:
@@ -55,13 +56,9 @@ class Multilevel(Staged):
 
     def next_numbers(self, rows: Rows, numbers: list[int]) -> list[int] | None:
         """Return the numbers after the next stage; None when the question is answered or the most are done."""
-        outcomes, is_probability = self._outcomes(rows)
-        work = self._work(rows)
-        lines = self.features(max(numbers))
-        fit = (lines, is_probability, self.is_fitted)
-        pilot = self.first_numbers()[0]
-        levels = choose_levels([y[:pilot] for y in outcomes], work, *fit).levels
-        shared = allocate(outcomes, work, levels, *fit)
+        nested, work = self._shared_by(rows), self._work(rows)
+        nested_so_far = [level for level, number in enumerate(numbers) if number >= numbers[0]]
+        shared = choose_levels(nested, work, nested_so_far)
         if self.realisations is not None:
             return self._fixed(numbers, shared)
         return self._towards_width(rows, numbers, shared)
@@ -102,35 +99,56 @@ class Multilevel(Staged):
         means = [float(np.nanmean(w)) if w.size and np.isfinite(w).any() else 0.0 for w in work]
         return means if min(means) > 0.0 else [1.0] * len(means)
 
-    def _outcomes(self, rows: Rows) -> tuple[list[np.ndarray], bool]:
-        """What the work is shared by: the question's own function, or the quantity where that hardly varies yet."""
-        own = rows.on_level(0)
+    def _shared_by(self, rows: Rows) -> Nested:
+        """What the work is shared by: the question's own function, at a limit that enough of the rows exceed."""
         functions = Value()
-        limit = self.question.limit
-        if self.question.kind == "quantile" and not own.is_failed.all():
-            limit = float(np.nanquantile(own.value, self.question.probability))
-        if self.question.kind != "mean" and limit is not None:
-            exceeds = Exceedances(np.array([limit]))
-            count = np.nansum(exceeds(own))
-            if min(count, np.sum(~own.is_failed) - count) >= FEWEST_TO_SHARE_BY:
-                functions = exceeds
-        levels = [rows.on_level(level) for level in range(self.coarser_levels + 1)]
-        return [functions(level) for level in levels], functions.is_probability
+        if self.question.kind != "mean":
+            values = np.sort(rows.value[(rows.level == 0) & ~rows.is_failed])
+            place = values.size * (self.question.probability or 0.0)
+            if self.question.kind == "exceedance":
+                place = float(np.searchsorted(values, self.question.limit, side="right"))
+            fewest = min(FEWEST_TO_SHARE_BY, values.size // 2)
+            place = int(np.clip(place, fewest, values.size - fewest))
+            functions = Exceedances(values[place - 1 : place])
+        return self._nested(functions(rows), rows, functions)
+
+    def _nested(self, outcome: np.ndarray, rows: Rows, functions: Functions) -> Nested:
+        levels = [rows.level == level for level in np.unique(rows.level)]
+        quantity = np.where(rows.is_censored & ~rows.is_failed, np.inf, rows.value)
+        return Nested(
+            outcome=[outcome[here] for here in levels],
+            quantity=[quantity[here] for here in levels],
+            is_probability=functions.is_probability,
+            limits=np.atleast_1d(functions.limits) if isinstance(functions, Exceedances) else None,
+            normals=self.normals(max(int(here.sum()) for here in levels)),
+            is_fitted=self.is_fitted,
+        )
 
     def used(self, rows: Rows) -> Rows:
         """Return the rows without a gap before them, of level 0 and of each coarser level with more of them."""
         numbers = rows.numbers(self.coarser_levels + 1)
         if self.realisations is not None:
             numbers[0] = min(numbers[0], self.realisations)
-        chain = usable([range(n) for n in numbers])
-        return rows.first([n if level in chain else 0 for level, n in enumerate(numbers)])
+        most = numbers[0]
+        for level, n in enumerate(numbers[1:], 1):
+            numbers[level] = n if n >= most + 2 else 0
+            most = max(most, numbers[level])
+        return rows.first(numbers)
 
-    def contributions(self, outcome: np.ndarray, rows: Rows, is_probability: bool) -> Contributions:
+    def notes(self, rows: Rows, found: Estimate) -> list[str]:
+        """Return what must be known to read an estimate, the number of simulations on each level first."""
+        used = self.used(rows)
+        levels, numbers = np.unique(used.level, return_counts=True)
+        coarser = [
+            f"{number} on coarser cells no. {level}" for level, number in zip(levels, numbers, strict=True) if level
+        ]
+        return [*(["with " + ", ".join(coarser)] if coarser else []), *super().notes(rows, found)]
+
+    def contributions(self, outcome: np.ndarray, rows: Rows, functions: Functions) -> Contributions:
         """Return what every index adds, with the coefficients of its fold."""
-        outcomes = [outcome[rows.level == level] for level in np.unique(rows.level)]
-        if not outcomes:
+        if not rows.value.size:
             return Contributions(np.zeros((0, outcome.shape[1])), np.zeros(0, int), np.zeros(outcome.shape[1]))
-        return contributions(outcomes, self.features(len(outcomes[-1])), is_probability, self.is_fitted)
+        return contributions(self._nested(outcome, rows, functions))
 
 
 class ControlVariate(Multilevel):
@@ -166,12 +184,9 @@ class ControlVariate(Multilevel):
         super().__init__(question, coarser_levels, realisations, pilot)
         self.components = features
 
-    def features(self, n: int) -> np.ndarray | None:
-        """Return the components of the first n fields and their squares less one, shape (n, 2 d); None for none."""
-        if self.components is None:
-            return None
-        normal = np.asarray(self.components(range(n)), float)
-        return np.hstack([normal, (normal**2 - 1.0) / math.sqrt(2.0)])
+    def normals(self, n: int) -> np.ndarray | None:
+        """Return the components of the first n fields, shape (n, d); None for none."""
+        return None if self.components is None else np.asarray(self.components(range(n)), float)
 
 
 def _whole(number: float) -> int:

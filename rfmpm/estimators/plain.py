@@ -1,4 +1,4 @@
-"""Plain Monte Carlo behind the common protocol: a fixed number of realisations, or blocks until an interval is narrow."""
+"""Plain Monte Carlo behind the common protocol: a fixed number of realisations, or blocks until it is known enough."""
 
 import math
 from dataclasses import replace
@@ -8,10 +8,10 @@ import numpy as np
 from rfmpm.estimators.contributions import Contributions
 from rfmpm.estimators.curves import Band, exceedance_curve
 from rfmpm.estimators.intervals import clopper_pearson
-from rfmpm.estimators.levels import contributions
+from rfmpm.estimators.levels import Nested, contributions
 from rfmpm.estimators.monte_carlo import Estimate, exceedance, mean, quantile
 from rfmpm.estimators.protocol import Expectation
-from rfmpm.estimators.question import Question
+from rfmpm.estimators.question import Functions, Question
 from rfmpm.estimators.rows import Rows
 from rfmpm.estimators.staged import LEAST_GROWTH, Staged
 
@@ -59,22 +59,23 @@ class MonteCarlo(Staged):
         n = rows.numbers(1)[0]
         return rows.first([n if self.realisations is None else min(n, self.realisations)])
 
-    def contributions(self, outcome: np.ndarray, rows: Rows, is_probability: bool) -> Contributions:
+    def contributions(self, outcome: np.ndarray, rows: Rows, functions: Functions) -> Contributions:
         """Return y / n of every realisation."""
-        return contributions([outcome], None, is_probability, is_fitted=False)
+        return contributions(Nested([outcome], [rows.value], functions.is_probability))
 
-    def _expectation(self, outcome: np.ndarray, rows: Rows, is_probability: bool) -> Expectation:
-        found = super()._expectation(outcome, rows, is_probability)
-        if not is_probability:
+    def expectation(self, rows: Rows, functions: Functions) -> Expectation:
+        """Estimate the means of k functions of the quantity: Student's t, or Clopper-Pearson's interval."""
+        found = super().expectation(rows, functions)
+        if not functions.is_probability:
             return found
-        outcome = outcome[rows.level == 0][: self.used(rows).value.size]
+        outcome = functions(rows)[rows.level == 0][: self.used(rows).value.size]
         count, failed = np.nansum(outcome, axis=0), np.isnan(outcome).sum(axis=0)
         lower, _ = clopper_pearson(count, len(outcome), self.question.confidence)
         _, upper = clopper_pearson(count + failed, len(outcome), self.question.confidence)
         return found._replace(lower=lower, upper=upper)
 
     def estimate(self, rows: Rows) -> Estimate:
-        """Answer the question: Student's t for a mean, Clopper-Pearson's interval for a probability, order statistics."""
+        """Answer the question: by Student's t, Clopper and Pearson's interval or order statistics."""
         asked, own = self.question, self.used(rows)
         if asked.kind == "mean":
             found = mean(own.value, asked.confidence, own.is_censored)

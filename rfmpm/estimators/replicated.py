@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from rfmpm.estimators.contributions import Contributions, Counts
-from rfmpm.estimators.question import Question
+from rfmpm.estimators.question import Functions, Question
 from rfmpm.estimators.rows import Rows
 from rfmpm.estimators.staged import LEAST_GROWTH, Staged
 
@@ -16,8 +16,8 @@ class Replicated(Staged):
     """Realisations of a design with replicates: index = replicate * replicate_size + point.
 
     Replicates are independent and identically distributed, points of one are not: the interval is Student's t over the
-    replicates' means. Probabilities that few points exceed, or all but few, have it widened by what Wilson's interval of
-    as many independent points has over Wald's, which is on the safe side for a design that beats independent points.
+    replicates' means. Probabilities that few points exceed, or all but few, have it widened by what Wilson's interval
+    of as many independent points has over Wald's, which is on the safe side for a design that beats independent points.
     """
 
     method = "design with replicates; Student t over their means"
@@ -58,7 +58,7 @@ class Replicated(Staged):
             n = min(n, self.first_numbers()[0])
         return rows.first([n // self.replicate_size * self.replicate_size])
 
-    def contributions(self, outcome: np.ndarray, rows: Rows, is_probability: bool) -> Contributions:
+    def contributions(self, outcome: np.ndarray, rows: Rows, functions: Functions) -> Contributions:
         """Return the mean over the completed points of each replicate, over the number of replicates."""
         outcome = outcome[: len(outcome) // self.replicate_size * self.replicate_size]
         present = ~np.isnan(outcome[:, 0])
@@ -67,8 +67,8 @@ class Replicated(Staged):
         total = np.where(present[:, None], outcome, 0.0).reshape(*shape, outcome.shape[1]).sum(axis=1)
         means = total[completed > 0] / completed[completed > 0][:, None]
         counts = ()
-        if is_probability and present.any():
+        if functions.is_probability and present.any():
             plus = total.sum(axis=0)
-            counts = (Counts(np.ones(plus.shape), plus, np.zeros(plus.shape), int(present.sum())),)
+            counts = (Counts(np.ones(plus.shape), plus, None, int(present.sum())),)
         stratum = np.zeros(len(means), int)
         return Contributions(means / max(len(means), 1), stratum, np.zeros(outcome.shape[1]), counts)
