@@ -90,7 +90,7 @@ def _page(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], dr
         sample=sections.sample(numbers),
         modes=sections.mode_cards(numbers, thumbnails),
         slopes=slopes,
-        drivers=driven.pictures,
+        drivers=driven,
         safety=sections.safety(numbers),
         statuses=[(NAMES.get(name, name), count) for name, count in numbers.statuses.items()],
         reasons=sections.reasons(numbers),
