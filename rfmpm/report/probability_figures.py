@@ -69,14 +69,15 @@ def _exceedance(numbers: Numbers) -> Picture:
     label = BEYOND.get(asked.quantity, f"{asked.noun} [{asked.unit}]")
     axes.set(xlabel=label, ylabel="probability of exceeding it", xlim=(curve.at[0], curve.at[-1]), ylim=(-0.02, 1.02))
     _legend_below(figure)
+    one = "band holds the true probability at one value"
+    both = f"dark {one}, the light band the whole curve" if curve.simultaneous_lower is not None else one
     return Picture(
         f"Probability that the {asked.noun} exceeds a value",
         encode(figure, CHART_DOTS_PER_INCH),
         f"Falling curve of the probability that the {asked.noun} exceeds a value, with bands. "
         f"The answer is marked: {words.number(numbers.answer.value)}{' ' if asked.answer_unit else ''}"
         f"{asked.answer_unit}.",
-        f"With {LEVEL} confidence the dark band holds the true probability at one value, the light band the whole "
-        "curve. Marked is the answer with its bounds.",
+        f"With {LEVEL} confidence the {both}. Marked is the answer with its bounds.",
     )
 
 
