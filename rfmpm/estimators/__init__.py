@@ -1,19 +1,38 @@
 """Rows of an ensemble -> estimates with their errors, and the plan of what to run next; pure."""
 
 from rfmpm.estimators.curves import Band, exceedance_curve, running_exceedance, running_mean
-from rfmpm.estimators.monte_carlo import Estimate, MonteCarlo, contiguous_prefix, exceedance, mean, quantile
+from rfmpm.estimators.monte_carlo import Estimate, contiguous_prefix, exceedance, mean, missing, quantile
+from rfmpm.estimators.multilevel import ControlVariate, Multilevel
+from rfmpm.estimators.plain import MonteCarlo
+from rfmpm.estimators.question import Exceedances, Given, Question, Value
+from rfmpm.estimators.replicated import Replicated
+from rfmpm.estimators.rows import Rows
 
-ESTIMATORS = {"monte_carlo": MonteCarlo}
+ESTIMATORS = {
+    "monte_carlo": MonteCarlo,
+    "replicated": Replicated,
+    "multilevel": Multilevel,
+    "control_variate": ControlVariate,
+}
 
 __all__ = [
     "ESTIMATORS",
     "Band",
+    "ControlVariate",
     "Estimate",
+    "Exceedances",
+    "Given",
     "MonteCarlo",
+    "Multilevel",
+    "Question",
+    "Replicated",
+    "Rows",
+    "Value",
     "contiguous_prefix",
     "exceedance",
     "exceedance_curve",
     "mean",
+    "missing",
     "quantile",
     "running_exceedance",
     "running_mean",

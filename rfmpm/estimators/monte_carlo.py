@@ -26,6 +26,7 @@ class Estimate:
     n: int  # realisations it rests on, failed ones included where they enter as bounds
     method: str
     note: str = ""
+    standard_error: float = float("nan")  # of the value; NaN where the interval does not rest on one
 
 
 def as_rows(values, censored) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -172,6 +173,23 @@ def contiguous_prefix(indices: Collection[int]) -> int:
     return int(np.sum(present == np.arange(present.size)))
 
 
+def missing(done: Collection[int], realisations: int) -> list[range]:
+    """Name the realisations that are still to be run.
+
+    Args:
+        done: indices that have a row already, in any order.
+        realisations: number wanted [-].
+
+    Returns:
+        The missing indices of 0 to realisations - 1, in ascending order, as ranges.
+    """
+    present = np.unique(np.asarray(done if isinstance(done, np.ndarray) else list(done), int))
+    present = present[(present >= 0) & (present < realisations)]
+    edges = np.concatenate([[-1], present, [realisations]])
+    before = np.flatnonzero(np.diff(edges) > 1)
+    return [range(int(edges[i]) + 1, int(edges[i + 1])) for i in before]
+
+
 class MonteCarlo:
     """Plan and estimate of a plain Monte Carlo campaign with a fixed number of realisations."""
 
@@ -197,11 +215,7 @@ class MonteCarlo:
         Returns:
             The missing indices of 0 to realisations - 1, in ascending order, as ranges.
         """
-        present = np.unique(np.asarray(done if isinstance(done, np.ndarray) else list(done), int))
-        present = present[(present >= 0) & (present < self.realisations)]
-        edges = np.concatenate([[-1], present, [self.realisations]])
-        before = np.flatnonzero(np.diff(edges) > 1)
-        return [range(int(edges[i]) + 1, int(edges[i + 1])) for i in before]
+        return missing(done, self.realisations)
 
     def estimate(self, values, limit: float, censored=None, confidence: float = 0.95) -> Estimate:
         """Estimate P(X > limit) from the first `realisations` values; arguments and result as in `exceedance`."""

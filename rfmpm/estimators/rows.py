@@ -1,5 +1,6 @@
 """What an estimator sees of a campaign: which simulations are finished, what each gave and what it cost."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,5 +34,22 @@ class Rows:
 
     def on_level(self, level: int) -> "Rows":
         """The rows of one level, sorted by index."""
-        chosen = self.level == level
+        return self.where(self.level == level)
+
+    def where(self, chosen: np.ndarray) -> "Rows":
+        """The rows that a mask of shape (n,) chooses, in the same order."""
         return Rows(*(column[chosen] for column in vars(self).values()))
+
+    def numbers(self, levels: int) -> list[int]:
+        """How many of the indices 0, 1, 2, ... each of so many levels holds without a gap."""
+        found = []
+        for level in range(levels):
+            index = self.index[self.level == level]
+            found.append(int(np.sum(index == np.arange(index.size))))
+        return found
+
+    def first(self, numbers: Sequence[int]) -> "Rows":
+        """The rows of level k with an index below the k-th of these numbers; no row of further levels."""
+        bound = np.zeros(max(int(self.level.max(initial=0)) + 1, len(numbers)), int)
+        bound[: len(numbers)] = numbers
+        return self.where(self.index < bound[self.level])
