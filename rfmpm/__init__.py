@@ -60,8 +60,9 @@ def draw_xi(study: Any, index: int = 0, level: int = 0) -> "np.ndarray":
         level: level of a multilevel plan; 0 for plain Monte Carlo.
 
     Returns:
-        `xi`, shape (n_variables,) [-]: the parts of the properties in the order of the study, those of a property from
-        its uppermost soil down; empty for a homogeneous study.
+        `xi`, shape (n_variables,) [-]: one for each uncertain number of the study, in its order, then the parts of the
+        properties in the order of the study, those of a property from its uppermost soil down; empty for a study in
+        which nothing is random.
 
     Raises:
         StudyError: with everything that is wrong with the study.
@@ -114,7 +115,7 @@ def simulate(
         index: realisation index.
         level: level of a multilevel plan; 0 for plain Monte Carlo.
         frames: number of snapshots to keep on the way.
-        homogeneous: take the mean strength everywhere.
+        homogeneous: take the mean strength everywhere, and the study's own value of what is uncertain.
         xi: standard-normal vector in place of the one that `draw_xi` draws, as for `realise_fields`.
         threads: that share every step, at least 1; None for the cores where the scene is large, else 1. Results depend
             on the number by rounding; an ensemble has one for each realisation.

@@ -8,8 +8,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-STATUS = {"ok": 0, "not_at_rest": 1, "diverged": 2, "left_grid": 3, "timeout": 4, "crashed": 5, "lost": 6}
-FAILED = frozenset({"diverged", "left_grid", "timeout", "crashed", "lost"})  # their quantities are NaN
+STATUS = {"ok": 0, "not_at_rest": 1, "diverged": 2, "left_grid": 3, "timeout": 4, "crashed": 5, "lost": 6, "refused": 7}
+FAILED = frozenset({"diverged", "left_grid", "timeout", "crashed", "lost", "refused"})  # their quantities are NaN
 STATUS_NAMES = {code: name for name, code in STATUS.items()}
 FAILED_CODES = frozenset(STATUS[name] for name in FAILED)
 BY_CHANCE = frozenset(STATUS[name] for name in ("timeout", "crashed", "lost"))  # may end otherwise the next time
@@ -27,6 +27,14 @@ def _always(study) -> bool:
 
 def _has_surface(study) -> bool:
     return study.output.surface_bin_m is not None
+
+
+def _has_factor(study) -> bool:
+    return bool(study.quantities.factor_of_safety)
+
+
+def _is_uncertain(study) -> bool:
+    return study.uncertain is not None
 
 
 def _varies(name: str) -> Callable[[Any], bool]:
@@ -162,6 +170,18 @@ VARIABLES = _table(
         "dissipation, relative to the work of gravity.",
     ),
     Variable(
+        "factor_of_safety",
+        ("realisation",),
+        "float64",
+        "1",
+        "factor of safety",
+        {
+            "comment": "Smallest over circular slip surfaces above the base, by equilibrium of moments (phi = 0), with "
+            "the peak cohesion at the material points; known where the simulation failed, too."
+        },
+        _has_factor,
+    ),
+    Variable(
         "final_surface",
         ("realisation", "x"),
         "float64",
@@ -169,6 +189,15 @@ VARIABLES = _table(
         "height of the final ground surface",
         {"comment": "Highest ground in each bin, above the base; 0 where the base is bare, missing where it failed."},
         _has_surface,
+    ),
+    Variable(
+        "uncertain_value",
+        ("realisation", "uncertain"),
+        "float64",
+        "",
+        "values of the uncertain numbers of the study",
+        {"comment": "Each in the unit that its key ends in; missing where the realisation crashed or was lost."},
+        _is_uncertain,
     ),
 )
 
@@ -198,7 +227,7 @@ COORDINATES = _table(
         "int64",
         "1",
         "index of the realisation",
-        {"comment": "Computed again, bit for bit, by: rfmpm rerun DIR --index INDEX."},
+        {"comment": "Computed again, bit for bit, by: rfmpm rerun DIR --index INDEX [--level LEVEL]."},
     ),
     Variable(
         "level",
@@ -206,7 +235,10 @@ COORDINATES = _table(
         "int32",
         "1",
         "level of the plan",
-        {"comment": "The stream of random numbers depends on (study seed, level, realisation) alone."},
+        {
+            "comment": "On whose cells it was simulated: 0 for the study's own, k for the k-th of its "
+            "estimator.coarser_cells_m. A realisation has the same random numbers on every level."
+        },
     ),
     Variable(
         "x",
@@ -216,6 +248,15 @@ COORDINATES = _table(
         "horizontal position of the bin centre",
         {"axis": "X", "comment": "From the left side of the domain."},
         _has_surface,
+    ),
+    Variable(
+        "uncertain",
+        ("uncertain",),
+        "str",
+        "",
+        "key of an uncertain number",
+        {"comment": "Dotted path in the study, lists by position."},
+        _is_uncertain,
     ),
 )
 

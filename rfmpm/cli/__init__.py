@@ -76,7 +76,9 @@ def rfmpm(
 def simulate(
     study: StudyFile,
     index: Index = 0,
-    homogeneous: Annotated[bool, typer.Option("--homogeneous", help="Mean strength everywhere.")] = False,
+    homogeneous: Annotated[
+        bool, typer.Option("--homogeneous", help="Mean strength everywhere, nothing uncertain.")
+    ] = False,
     out: OutFolder = None,
     frames: Annotated[int, typer.Option(min=0, metavar="N", help="Snapshots to keep on the way.")] = 0,
     animate: Annotated[bool, typer.Option("--animate", help="Write an animation (60 frames unless given).")] = False,
@@ -92,8 +94,8 @@ def simulate(
     from rfmpm.study import load_study
 
     settings = load_study(study)
-    if xi is not None and (homogeneous or not settings.random_field):
-        end("--xi: there is no random field to make of it; leave the option out", WRONG_STUDY)
+    if xi is not None and (homogeneous or not (settings.random_field or settings.uncertain)):
+        end("--xi: there is nothing random to make of it; leave the option out", WRONG_STUDY)
     name = "simulation_homogeneous" if homogeneous else f"simulation_{index if xi is None else xi.stem}"
     folder = _writable(out or Path(settings.output.directory) / name)
     from rfmpm import realisation, report, results
@@ -122,7 +124,7 @@ def _read_xi(path: Path, prepared: Any) -> Any:
     from rfmpm import results
 
     try:
-        return results.read_xi(path, prepared.properties.n_variables)
+        return results.read_xi(path, prepared.n_variables)
     except ValueError as error:
         end(str(error), WRONG_STUDY)
 

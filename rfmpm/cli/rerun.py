@@ -12,6 +12,9 @@ from rfmpm.cli.tables import outcome_rows, print_table
 def rerun(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a campaign, complete or not.")],
     index: Annotated[int, typer.Option("--index", min=0, metavar="I", help="Which realisation.")],
+    level: Annotated[
+        int, typer.Option("--level", min=0, metavar="K", help="On which cells: 0 the study's own, K the K-th coarser.")
+    ] = 0,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Default: rerun_I in the folder.")] = None,
     frames: Annotated[int, typer.Option(min=0, metavar="N", help="Snapshots to keep on the way.")] = 0,
 ) -> None:
@@ -19,16 +22,18 @@ def rerun(
     from rfmpm.study import load_study
 
     study = load_study(directory / "study.toml")
-    from rfmpm import ensemble, results
+    from rfmpm import ensemble, planning, results
     from rfmpm.variables import BY_CHANCE, STATUS_NAMES
 
     try:
-        recorded = ensemble.find_row(directory, index)
+        recorded = ensemble.find_row(directory, index, level)
     except LookupError as error:
         end(str(error.args[0]), WRONG_STUDY)
-    row, outcome = _again(study, index, frames)
+    which = f"realisation {index}" + (f" on level {level}" if level else "")
+    replay = planning.Replay(study, _rows_before(directory, study), level)
+    row, outcome = _again(replay, index, frames)
     if outcome is not None:
-        _write(outcome, study, out or directory / f"rerun_{index}")
+        _write(outcome, replay.prepared.study, out or directory / f"rerun_{index}{f'_level_{level}' if level else ''}")
     found = results.columns([row], study)
     for change in _changes(recorded.attributes, results.row_attributes(study)):
         typer.echo(f"then and now: {change}")
@@ -36,31 +41,43 @@ def rerun(
     status = int(recorded.columns["status"][0])
     if names and status in BY_CHANCE:
         reason = recorded.columns["status_reason"][0]
-        words = f"realisation {index} is on record as {STATUS_NAMES[status]} ({reason}), which did not come again"
+        words = f"{which} is on record as {STATUS_NAMES[status]} ({reason}), which did not come again"
         end(f"{words}; rfmpm run --repeat-failed replaces the row", TOO_MANY_FAILED)
     if names:
         values = [f"  {name}: {_shown(recorded.columns[name])} -> {_shown(found[name])}" for name in names]
-        end("\n".join([f"realisation {index} is not the one on record; it differs in", *values]), TOO_MANY_FAILED)
-    typer.echo(f"realisation {index} is the one on record, bit for bit")
+        end("\n".join([f"{which} is not the one on record; it differs in", *values]), TOO_MANY_FAILED)
+    typer.echo(f"{which} is the one on record, bit for bit")
 
 
-def _again(study: Any, index: int, frames: int) -> tuple[dict[str, Any], Any]:
+def _rows_before(directory: Path, study: Any) -> Any:
+    """The rows from which a realisation may follow; None where each stands by itself."""
+    from rfmpm import ensemble, planning
+
+    if not planning.has_chains(study):
+        return None
+    try:
+        return ensemble.rows_on_record(directory, study)
+    except (ensemble.FolderMismatch, ensemble.RowsDiffer) as error:
+        end(str(error), WRONG_STUDY)
+
+
+def _again(replay: Any, index: int, frames: int) -> tuple[dict[str, Any], Any]:
     """Row and outcome; no outcome if the realisation raises, which a campaign records as crashed."""
     from threadpoolctl import threadpool_limits
 
-    from rfmpm import realisation
+    from rfmpm import planning, realisation
     from rfmpm.ensemble.worker import described
     from rfmpm.variables import failed_row
 
     with threadpool_limits(limits=1):  # as in a campaign
-        prepared = realisation.prepare(study)
+        options = replay.options(index)
         try:
-            outcome = realisation.simulate(prepared, index, frames=frames)
+            outcome = realisation.simulate(replay.prepared, index, frames=frames, **options)
         except Exception as failure:
             reason = described(failure)
             typer.echo(f"status  crashed: {reason}")
-            return failed_row(study, index, "crashed", reason), None
-    return realisation.as_row(outcome, index), outcome
+            return failed_row(replay.study, index, "crashed", reason, replay.level), None
+    return planning.with_own_bins(realisation.as_row(outcome, index, replay.level), replay.study), outcome
 
 
 def _write(outcome: Any, study: Any, folder: Path) -> None:

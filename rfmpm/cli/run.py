@@ -93,22 +93,32 @@ def run(
     dataset = _campaign(settings, folder, workers, options)
     if dataset is None:
         return  # another rank than the first
+    from rfmpm import planning
     from rfmpm import report as reporting
 
     typer.echo(f"dataset: {folder / 'ensemble.nc'}")
+    if settings.study.until is not None:
+        for line in planning.answer_lines(settings, planning.answer(settings, planning.rows_of(settings, dataset))):
+            typer.echo(line)
     typer.echo(f"report:  {reporting.write(folder)}")
-    for line in reporting.summary_lines(dataset, settings):
-        typer.echo(line)
+    if not planning.has_chains(settings):  # their realisations are no fair sample of the slope
+        for line in reporting.summary_lines(planning.on_own_cells(dataset), settings):
+            typer.echo(line)
     allowed = settings.failures.max_failed_fraction if allow_failed is None else allow_failed
     end_if_too_many_failed(failures(dataset), dataset.sizes["realisation"], allowed)
 
 
 def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[str, Any]) -> Any:
-    from rfmpm import ensemble
+    from rfmpm import ensemble, planning
     from rfmpm.ensemble.mpi import launched_ranks
 
-    if (part := options["indices"]) is not None and part[1] > settings.study.realisations:
-        end(f"--indices {part[0]}:{part[1]}: the study has {settings.study.realisations}", WRONG_STUDY)
+    if (part := options["indices"]) is not None:
+        if not planning.is_divisible(settings):
+            end(f"--indices {part[0]}:{part[1]}: {planning.NOT_DIVISIBLE}", WRONG_STUDY)
+        if part[1] > settings.study.realisations:
+            end(f"--indices {part[0]}:{part[1]}: the study has {settings.study.realisations}", WRONG_STUDY)
+    if options["repeat_failed"] and planning.has_chains(settings):
+        end(f"--repeat-failed: {planning.NOT_AGAIN}", WRONG_STUDY)
     if workers is not None and (launched_ranks() or 1) > 1:
         end("--workers: the ranks of mpirun are the workers; leave the option out", WRONG_STUDY)
     with campaigns_end_in_words():

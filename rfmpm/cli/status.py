@@ -25,7 +25,8 @@ def status(
         end(f"{directory}: no {campaign_status.STATUS_FILE} here; is it the folder of a campaign?", WRONG_STUDY)
     except ValueError as error:
         end(str(error), WRONG_STUDY)
-    found["estimate"] = campaign_status.estimate_so_far(directory, found["first"], found["total"])
+    if "question" not in found:
+        found["estimate"] = campaign_status.estimate_so_far(directory, found["first"], found["total"])
     if as_json:
         import json
 
@@ -44,19 +45,34 @@ def _lines(directory: Path, found: Mapping[str, Any]) -> Iterator[str]:
         yield f"doubt    {found['doubt']}"
     if found["reason"]:
         yield f"reason   {found['reason']}"
-    yield f"done     {found['done']} of {found['total']} realisations"
+    question = found.get("question")
+    if question:
+        yield f"question {question}"
+    expected = f", about {found['expected']:,} in all" if found.get("expected") else ""
+    yield f"done     {found['done']} of {found['total']} realisations{' planned so far' if question else ''}{expected}"
     failed = found["failed"]
     yield f"failed   {', '.join(f'{count} {name}' for name, count in failed.items()) or 0}"
     if found["state"] == "running":
         left = found["seconds_left"]
         time_left = "time left unknown" if left is None else f"{timedelta(seconds=round(left))} left"
+        time_left += " of this round" if question else ""
         yield f"rate     {found['rate_per_minute']:.3g} per minute, {time_left}"
         for worker in found["running"][:SHOWN]:
             where = f"rank {worker['rank']} on {worker['host']}"
-            yield f"running  {worker['realisation']} for {timedelta(seconds=round(worker['seconds']))}, {where}"
+            level = f" on level {worker['level']}" if "level" in worker else ""
+            yield f"running  {worker['realisation']}{level} for {timedelta(seconds=round(worker['seconds']))}, {where}"
         if len(found["running"]) > SHOWN:
             yield f"running  and {len(found['running']) - SHOWN} more"
-    yield f"estimate {_estimate(found['estimate'])}"
+    yield f"estimate {_answer(found['estimate']) if question else _estimate(found['estimate'])}"
+
+
+def _answer(found: Mapping[str, Any] | None) -> str:
+    if found is None:
+        return "none yet: the first round is not finished"
+    value = "unknown" if found["value"] is None else f"{found['value']:.4g}"
+    ends = ["unbounded" if found[end] is None else f"{found[end]:.4g}" for end in ("lower", "upper")]
+    interval = f"{100.0 * found['confidence']:.0f} % interval {ends[0]} to {ends[1]}"
+    return f"{value}, {interval}, from rounds that are finished: {found['n']} realisations on the study's own cells"
 
 
 def _estimate(found: Mapping[str, Any] | None) -> str:

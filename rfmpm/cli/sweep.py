@@ -44,6 +44,12 @@ def sweep(
     settings = load_study(study)
     if realisations is not None:
         settings = settings.with_changes({"study.realisations": realisations})
+    if settings.study.until is not None or settings.estimator is not None:
+        end(
+            "sweep: the cells of a grid are compared on the same, independent realisations: give study.realisations "
+            "instead of study.until, and leave [estimator] out",
+            WRONG_STUDY,
+        )
     grid = cells(settings, axes)
     folder = out or Path(f"{settings.output.directory}_sweep")
     campaigns = _campaigns(grid, folder, workers)

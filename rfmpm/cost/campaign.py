@@ -2,6 +2,7 @@
 
 import tempfile
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, sqrt
 from pathlib import Path
@@ -9,13 +10,21 @@ from typing import Any
 
 import numpy as np
 
-from rfmpm import realisation
+from rfmpm import planning, realisation
 from rfmpm.cost import results as files_of_results
 from rfmpm.cost import trial
 from rfmpm.ensemble.processes import available_processors
 from rfmpm.report.numbers import PICTURED
 
 UNKNOWN_ERROR = 0.5  # where a single realisation was tried, or none [-]
+UNKNOWN_COUNT = 1000  # of realisations, where nothing of what is said depends on it
+NORMAL_95 = 1.96  # half width of a 95 % interval over the standard error [-]
+WORST_CASE = 0.25 * 1.1  # variance of an indicator of probability one half, and how much more the exact interval takes
+OF_ALL_CELLS = (
+    *("campaign_s", "campaign_low_s", "campaign_high_s", "campaign_at_most_s"),
+    *("disk_bytes", "disk_at_most_bytes"),
+)
+OF_THE_CAMPAIGN = (*OF_ALL_CELLS, "work_s", "report_s")
 LEAST_ERROR = 0.15  # of a time measured for seconds, on a machine that others use too [-]
 
 
@@ -50,18 +59,61 @@ def estimate(study, ranks: int | None = None) -> dict[str, int | float]:
     Returns:
         Counts, times in keys that end in `_s`, lengths in `_m` and sizes in `_bytes`. What is "at most" holds for
         realisations that move until `time.end_s`; the rest expects realisations to come to rest as the trial ones do.
-        Times are those of processors that do nothing else; `campaign_high_s` includes what else they did in the trial.
+        Where a question decides how many there are, those of the campaign are for `realisations_at_most`, or left out
+        where that is not known; coarser cells have keys of their own, and the campaign is then `work_s` on the study's
+        own cells, at most. Times are those of processors that do nothing else; `campaign_high_s` includes what else
+        they did in the trial.
 
     Raises:
         ValueError: for less than one rank.
     """
     if ranks is not None and ranks < 1:
         raise ValueError(f"ranks = {ranks}: at least 1 is needed")
-    count = study.study.realisations
+    levels, most = planning.studies_by_level(study), most_realisations(study)
+    count = most or UNKNOWN_COUNT
     workers = min(ranks or available_processors(), count)
+    tried = levels[0].with_changes({"study.until": None, "study.realisations": count, "estimator": None})
     with tempfile.TemporaryDirectory() as scratch:
-        trials = _try(study, min(workers, available_processors()), Path(scratch))
-    return _sizes(trials, count, workers) | _times(trials, count, workers)
+        trials = _try(tried, min(workers, available_processors()), Path(scratch))
+        coarser = _coarser(trials, levels[1:], workers, Path(scratch))
+    found = _sizes(trials, count, workers) | _times(trials, count, workers)
+    if study.study.until is None:
+        return found
+    unknown = {*(OF_THE_CAMPAIGN if most is None else ()), *(OF_ALL_CELLS if coarser else ())}
+    known = {name: value for name, value in found.items() if name not in unknown}
+    return ({} if most is None else {"realisations_at_most": most}) | known | coarser
+
+
+def most_realisations(study) -> int | None:
+    """How many realisations on the study's own cells its campaign has at the most; None where that is not known.
+
+    Args:
+        study: the study.
+
+    Returns:
+        The fixed number, `at_most`, or what the width of a probability's interval takes in the worst case.
+    """
+    asked = study.study.until
+    if asked is None or asked.at_most is not None:
+        return study.study.realisations if asked is None else asked.at_most
+    if asked.half_width is None:
+        return None
+    return ceil(WORST_CASE * (NORMAL_95 / asked.half_width) ** 2)
+
+
+def _coarser(trials: Trials, levels: Sequence[Any], workers: int, scratch: Path) -> dict[str, int | float]:
+    """Cost of a simulation on each of the coarser cells; steps are taken as proportional to the cells along a side."""
+    own, found = trials.prepared.study.discretisation.cell_m, {}
+    steps = trials.lengths.steps if trials.lengths else np.array([float(trials.steps_at_most)])
+    for number, level in enumerate(levels, start=1):
+        cell = level.discretisation.cell_m
+        time_step = trials.time_step * cell / own
+        speed = trial.speed(level, scratch / "work", min(workers, available_processors()), time_step)
+        found |= {
+            f"level_{number}_cell_m": cell,
+            f"level_{number}_realisation_s": float(speed.beside + speed.step * steps.mean() * own / cell),
+        }
+    return found
 
 
 def _try(study, workers: int, scratch: Path) -> Trials:

@@ -2,6 +2,7 @@
 
 from rfmpm.ensemble.books import CampaignFailed
 from rfmpm.ensemble.campaign import Interrupted, TooShort
+from rfmpm.ensemble.course import rows_on_record
 from rfmpm.ensemble.finished import RowsDiffer
 from rfmpm.ensemble.folder import FolderMismatch
 from rfmpm.ensemble.mpi import LauncherMismatch
@@ -18,5 +19,6 @@ __all__ = [
     "TooShort",
     "find_row",
     "merge_parts",
+    "rows_on_record",
     "run",
 ]

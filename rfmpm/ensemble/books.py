@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
+from rfmpm.ensemble import codes
 from rfmpm.variables import FAILED_CODES, STATUS, STATUS_NAMES
 
 FEWEST = 10  # failures that end a campaign early; fewer are judged when it is complete
@@ -21,7 +22,7 @@ class Books:
         before: rows by status that earlier runs have written.
         action: of the study's failure policy.
         allowed: share of failed realisations that is allowed.
-        examples: failed realisations of earlier runs by status, with their reasons.
+        examples: codes of failed realisations of earlier runs by status, with their reasons.
     """
 
     def __init__(
@@ -42,13 +43,13 @@ class Books:
         """Count a realisation that has ended.
 
         Args:
-            ended: its index, status and reason.
+            ended: its code, status and reason.
         """
         self.counts[ended.status] += 1
         self.done += 1
         if ended.status in FAILED_CODES:
             self.failed += 1
-            self.examples.setdefault(ended.status, (ended.realisation, ended.reason))
+            self.examples.setdefault(ended.status, (ended.code, ended.reason))
 
     def failures(self) -> dict[str, int]:
         """Count failed realisations, those of earlier runs included, by the name of their status."""
@@ -78,6 +79,6 @@ class Books:
         return ""
 
     def _example(self, name: str) -> str:
-        index, reason = self.examples.get(STATUS[name], (None, ""))
-        which = "a realisation" if index is None else f"realisation {index}"
+        code, reason = self.examples.get(STATUS[name], (None, ""))
+        which = "a realisation" if code is None else codes.in_words(code)
         return f"{which} ended with status {name}" + (f": {reason}" if reason else "")

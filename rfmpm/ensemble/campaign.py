@@ -1,4 +1,4 @@
-"""A campaign in its folder: what is missing is run, in rounds while workers die, until its policy or a stop ends it."""
+"""A campaign in its folder: what its plan lacks is run, in rounds, until it lacks nothing or something ends it."""
 
 import logging
 import sys
@@ -9,16 +9,17 @@ from typing import Any
 import numpy as np
 
 from rfmpm import campaign_status, results
-from rfmpm.ensemble import folder, segments
+from rfmpm.ensemble import codes, folder, segments
 from rfmpm.ensemble.board import Board
 from rfmpm.ensemble.books import Books, CampaignFailed
+from rfmpm.ensemble.course import FixedCourse, OpenCourse
 from rfmpm.ensemble.dispatcher import Dispatcher, Todo
 from rfmpm.ensemble.finished import NOTHING
 from rfmpm.ensemble.markers import take_left_behind
 from rfmpm.ensemble.progress import Progress
 from rfmpm.ensemble.stop import Abandoned
 from rfmpm.ensemble.worker import ISOLATED_FROM, Worker
-from rfmpm.estimators.monte_carlo import MonteCarlo
+from rfmpm.ensemble.xi import XiMaker
 from rfmpm.variables import BY_CHANCE, FAILED_CODES, STATUS
 
 log = logging.getLogger("rfmpm")
@@ -39,7 +40,7 @@ class Campaign:
         crew: who works.
         worker: of this process.
         journal: of the folder.
-        asked: the realisations to be had.
+        course: along which the realisations to be had are found.
         allowed: share of failed realisations that is allowed.
         repeat_failed: whether what a crash or a time limit ended is run again.
         is_shown: whether progress and remarks are shown on standard error.
@@ -49,45 +50,60 @@ class Campaign:
     """
 
     def __init__(
-        self, crew, worker: Worker, journal, asked: range, allowed: float, repeat_failed: bool, is_shown: bool
+        self,
+        crew,
+        worker: Worker,
+        journal,
+        course: FixedCourse | OpenCourse,
+        allowed: float,
+        repeat_failed: bool,
+        is_shown: bool,
     ):
         self.crew, self.worker, self.journal = crew, worker, journal
         self.allowed, self.is_shown = allowed, is_shown
         self.study, self.directory = worker.study, worker.directory
-        self.asked, self.total = asked, len(asked)
-        self.found = NOTHING
+        self.course, self.xi = course, XiMaker(worker)
+        self.found, self.progress = NOTHING, Progress(0, 0, is_shown)
         self.done = 0  # by this run
         self.again = np.empty(0, dtype=np.int64)  # realisations that have a row and run once more
         self._look()
         if repeat_failed:
-            places = self.found.between(asked.start, asked.stop)
-            self.again = places["realisation"][np.isin(places["status"], list(BY_CHANCE))]
+            places = self.found.at(self.position.planned())
+            self.again = places["code"][np.isin(places["status"], list(BY_CHANCE))]
             self._look()
         self.desk = Dispatcher(self.todo, {}, self.books, journal, self.progress)
 
     def _look(self) -> None:
-        """Find out what the folder holds."""
+        """Find out what the folder holds, and what the plan lacks."""
         put_aside = len(self.journal.events("quarantine"))
         self.found = segments.finished(self.directory, self.study, self.journal, self.found)
         for event in self.journal.events("quarantine")[put_aside:]:
             where = f"{self.directory / folder.QUARANTINE}; its realisations run again"
             self._say(f"{event['segment']} is not valid and was moved to {where}")
-        plan = MonteCarlo(self.asked.stop).plan(np.setdiff1d(self.found.indices, self.again))
-        missing = (range(max(part.start, self.asked.start), part.stop) for part in plan)
-        self.todo = Todo(part for part in missing if part)
-        places = self.found.between(self.asked.start, self.asked.stop)
-        is_kept = ~np.isin(places["realisation"], self.again)
-        codes, numbers = np.unique(places["status"][is_kept], return_counts=True)
-        counts = dict(zip(codes.tolist(), numbers.tolist(), strict=True))
+        self.position = self.course.follow(self.found, self.again)
+        self.todo = Todo(self.position.missing)
+        places = self.found.at(self.position.planned())
+        status, numbers = np.unique(places["status"][~np.isin(places["code"], self.again)], return_counts=True)
+        counts = dict(zip(status.tolist(), numbers.tolist(), strict=True))
         policy = self.study.failures
         self.books = Books(self.total, counts, policy.action, self.allowed, self._examples(counts))
-        self.progress = Progress(self.total, self.books.before, self.is_shown)
+        self.outlook = self.course.outlook(self.position)
+        self.progress.begin(self.total, self.books.before, self.outlook.expected)
+
+    @property
+    def total(self) -> int:
+        """What is planned so far [-]."""
+        return self.position.total
+
+    def _counts(self) -> str:
+        return f"{self.books.before} of {self.total} realisations" + self.course.so_far
 
     def _examples(self, counts: Mapping[int, int]) -> dict[int, tuple[int, str]]:
         if not FAILED_CODES.intersection(counts):
             return {}
-        events = [event for event in self.journal.events("failed") if event["realisation"] in self.asked]
-        return {STATUS[event["status"]]: (event["realisation"], event["reason"]) for event in reversed(events)}
+        events = [(codes.of_entry(event), event) for event in self.journal.events("failed")]
+        planned = [(code, event) for code, event in reversed(events) if code in self.position]
+        return {STATUS[event["status"]]: (code, event["reason"]) for code, event in planned}
 
     def begin(self, fresh: bool) -> None:
         """Note the start.
@@ -102,11 +118,9 @@ class Campaign:
         if folder.take_stop_file(self.directory):
             self._say(f"removed the file {folder.STOP_FILE}, which had asked an earlier run for its end")
         self.worker.stop.file = self.directory / folder.STOP_FILE
-        beyond = self.found.count - len(self.found.between(self.asked.start, self.asked.stop))
-        if beyond:
-            self._say(f"{beyond} more realisations in the folder than were asked for stay there, out of ensemble.nc")
         if self.todo:
-            self._say(f"{len(self.todo)} of {self.total} realisations to run, {self.crew.in_words()}, one thread each")
+            lacking = f"{len(self.todo)} of {self.total} realisations{self.course.so_far} to run"
+            self._say(f"{lacking}, {self.crew.in_words()}, one thread each")
 
     def _say(self, remark: str) -> None:
         log.info(remark)
@@ -132,7 +146,7 @@ class Campaign:
     def _state(self) -> dict[str, Any]:
         books, progress = self.books, self.progress
         return {
-            "first": self.asked.start,
+            "first": self.course.first,
             "total": self.total,
             "done": sum(books.counts.values()),
             "failed": books.failures(),
@@ -140,10 +154,11 @@ class Campaign:
             "rate_per_minute": progress.per_minute(books.done),
             "seconds_left": progress.seconds_left(books.done),
             "workers": self.crew.size,
+            **self.outlook.as_entry(),
         }
 
     def carry_out(self) -> None:
-        """Run what is missing; returns when every realisation has a row.
+        """Run what the plan lacks, plan after plan; returns when it lacks nothing.
 
         Raises:
             Interrupted: if something asked for the end, or workers died without getting anything done.
@@ -155,24 +170,30 @@ class Campaign:
             why = self.books.why_not()
             if why and (self.todo or self.books.action == "abort"):
                 self.journal.write("stop", complete=False, missing=len(self.todo), reason=why)
-                raise CampaignFailed(f"stopped with {self.books.before} of {self.total} realisations: {why}")
+                raise CampaignFailed(f"stopped with {self._counts()}: {why}")
             if not self.todo:
-                return
+                return self._name_what_is_beyond()
             if idle == ISOLATED_FROM:
                 self._interrupt("workers die and nothing gets done", losses)
-            before, stopped_by = self.found.count, self._round()
+            before, ran, stopped_by = self.found.count, self.position, self._round()
             losses += self.desk.losses
             self.done += self.books.done
-            self.again = self.again[[index in self.desk.todo for index in self.again.tolist()]]
+            self.again = self.again[[code in self.desk.todo or code not in ran for code in self.again.tolist()]]
             self._look()
+            if self.total > ran.total:
+                self.journal.write("plan", realisations=self.total, todo=len(self.todo), **self.outlook.as_entry())
             idle = 0 if self.found.count > before else idle + 1
             if stopped_by and self.todo:
                 self._interrupt(stopped_by, losses)
 
+    def _name_what_is_beyond(self) -> None:
+        if beyond := self.found.count - self.total:
+            self._say(f"{beyond} more realisations in the folder than were asked for stay there, out of ensemble.nc")
+
     def _interrupt(self, reason: str, losses: list[str]) -> None:
         self.journal.write("stop", complete=False, missing=len(self.todo), reason=reason)
         lines = "".join(f"\n  {line}" for line in dict.fromkeys([*losses, reason]))
-        counts = f"stopped early with {self.books.before} of {self.total} realisations"
+        counts = f"stopped early with {self._counts()}"
         if "--wall-time" in reason and not self.done:
             raise TooShort(
                 f"{counts}; not one was finished by this run: give a longer --wall-time, in which making the scene and "
@@ -187,10 +208,14 @@ class Campaign:
         self._note_unfinished()
         starts = self.journal.unfinished_starts()
         deadline = self.worker.stop.deadline
-        self.desk = Dispatcher(self.todo, starts, self.books, self.journal, self.progress, deadline)
+        longest = self.desk.longest
+        self.desk = Dispatcher(self.todo, starts, self.books, self.journal, self.progress, deadline, self.xi)
+        self.desk.longest = longest
+        self.worker.needed = tuple(sorted({codes.split(part.start)[0] for part in self.position.missing}))
         try:
             with threadpool_limits(limits=1):
-                self.worker.prepare()
+                self.worker.prepare(self.worker.needed)
+                self.xi.prepare(self.position.rows)
         except Abandoned:
             return self.worker.stop.reason
         with self.progress:
@@ -199,5 +224,5 @@ class Campaign:
 
     def _note_unfinished(self) -> None:
         for marker in take_left_behind(self.directory):
-            if marker["realisation"] not in self.found.indices:
+            if codes.of_entry(marker) not in self.found.codes:
                 self.journal.write("unfinished_start", **marker)

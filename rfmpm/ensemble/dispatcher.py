@@ -3,11 +3,14 @@
 import threading
 import time
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
 from typing import Any
 
+import numpy as np
+
+from rfmpm.ensemble import codes
 from rfmpm.ensemble.books import Books
 from rfmpm.ensemble.markers import Task
 from rfmpm.ensemble.worker import Report
@@ -15,10 +18,10 @@ from rfmpm.variables import FAILED_CODES, STATUS_NAMES
 
 
 class Todo:
-    """Indices still to be run, held as ranges.
+    """Codes of what is still to be run, held as ranges.
 
     Args:
-        ranges: of indices, in order.
+        ranges: of codes, in order.
     """
 
     def __init__(self, ranges: Iterable[range]):
@@ -30,11 +33,11 @@ class Todo:
     def __bool__(self) -> bool:
         return bool(self.ranges)
 
-    def __contains__(self, index: int) -> bool:
-        return any(index in part for part in self.ranges)
+    def __contains__(self, code: int) -> bool:
+        return any(code in part for part in self.ranges)
 
     def take(self) -> int:
-        """Take the next index out."""
+        """Take the next code out."""
         first = self.ranges.popleft()
         if len(first) > 1:
             self.ranges.appendleft(first[1:])
@@ -54,16 +57,26 @@ class Dispatcher:
 
     Args:
         todo: the realisations to run.
-        starts: starts of realisations that came to no end, by index.
+        starts: starts of realisations that came to no end, by code.
         books: of the campaign.
         journal: where segments, failures and losses are noted.
         progress: the display.
         deadline: nothing is handed out that would last beyond it, if it took as long as the longest so far; on the
             clock of time.monotonic [s].
+        xi_of: makes the random vector of a code, shape (n_variables,) [-]; None where each is drawn from its stream.
     """
 
-    def __init__(self, todo: Todo, starts: Mapping[int, int], books: Books, journal, progress, deadline: float = inf):
-        self.todo, self.starts, self.books = todo, starts, books
+    def __init__(
+        self,
+        todo: Todo,
+        starts: Mapping[int, int],
+        books: Books,
+        journal,
+        progress,
+        deadline: float = inf,
+        xi_of: Callable[[int], np.ndarray | None] = lambda code: None,
+    ):
+        self.todo, self.starts, self.books, self.xi_of = todo, starts, books, xi_of
         self.journal, self.progress, self.deadline = journal, progress, deadline
         self.held: dict[int, Held] = {}
         self.hosts: dict[int, str] = {}
@@ -93,8 +106,8 @@ class Dispatcher:
             self.progress.show(self.books.done, self.books.failed)
             if report.is_last or not self.todo or self._is_to_end():
                 return None
-            index = self.todo.take()
-            self.held[rank] = Held(Task(index, 1 + self.starts.get(index, 0)), time.monotonic())
+            code = self.todo.take()
+            self.held[rank] = Held(Task(code, 1 + self.starts.get(code, 0), self.xi_of(code)), time.monotonic())
             return self.held[rank].task
 
     def _note(self, rank: int, report: Report) -> None:
@@ -106,8 +119,8 @@ class Dispatcher:
             self.books.enter(ended)
             self.longest = max(self.longest, ended.wall_time)
             if ended.status in FAILED_CODES:
-                status, at = STATUS_NAMES[ended.status], ended.realisation
-                self._write("failed", rank=rank, realisation=at, status=status, reason=ended.reason)
+                status, which = STATUS_NAMES[ended.status], codes.as_entry(ended.code)
+                self._write("failed", rank=rank, **which, status=status, reason=ended.reason)
         if report.error:
             self.losses.append(f"worker {rank} could not go on: {report.error}")
             self._write("worker_error", rank=rank, reason=report.error)
@@ -151,10 +164,10 @@ class Dispatcher:
         """
         with self._lock:
             held = self.held.pop(rank, None)
-            index = None if held is None else held.task.realisation
-            at = "" if index is None else f" in realisation {index}"
+            code = None if held is None else held.task.code
+            at = "" if code is None else f" in {codes.in_words(code)}"
             self.losses.append(f"worker {rank} died{at}: {reason}")
-            self._write("worker_lost", rank=rank, realisation=index, reason=reason)
+            self._write("worker_lost", rank=rank, **codes.as_entry(code), reason=reason)
             return held is not None and bool(self.todo) and not self.is_stopped
 
     def running(self) -> list[dict[str, Any]]:
@@ -164,7 +177,7 @@ class Dispatcher:
             {
                 "rank": rank,
                 "host": self.hosts.get(rank, ""),
-                "realisation": held.task.realisation,
+                **codes.as_entry(held.task.code),
                 "attempt": held.task.attempt,
                 "seconds": round(clock - held.since, 1),
             }

@@ -7,9 +7,15 @@ from pathlib import Path
 import numpy as np
 
 from rfmpm import results
+from rfmpm.ensemble import codes
 from rfmpm.variables import BY_CHANCE, FAILED_CODES
 
-PLACES = np.dtype([("realisation", "i8"), ("segment", "i4"), ("row", "i4"), ("status", "i1")])
+PLACES = np.dtype(
+    [
+        *(("code", "i8"), ("segment", "i4"), ("row", "i4"), ("status", "i1")),
+        *(("value", "f8"), ("is_censored", "?"), ("step_count", "i4")),  # of the quantity in question; -1: unknown
+    ]
+)
 
 
 class RowsDiffer(RuntimeError):
@@ -27,7 +33,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class Finished:
-    """Which realisations have a row and where it lies; 17 bytes each, the rows themselves stay on the disk."""
+    """Which realisations have a row and where it lies; 30 bytes each, the rows themselves stay on the disk."""
 
     segments: tuple[Segment, ...]
     places: np.ndarray  # one for each realisation on record, sorted; also of rows that lack what the study asks for
@@ -38,28 +44,28 @@ class Finished:
         return self.places[is_whole[self.places["segment"]]]
 
     @cached_property
-    def indices(self) -> np.ndarray:
-        """Finished realisations, sorted, shape (n,)."""
-        return np.ascontiguousarray(self._whole["realisation"])
+    def codes(self) -> np.ndarray:
+        """Codes of the finished realisations, sorted, shape (n,)."""
+        return np.ascontiguousarray(self._whole["code"])
 
     @cached_property
     def status(self) -> np.ndarray:
-        """Code of STATUS of each of `indices`, shape (n,)."""
+        """Code of STATUS of each of `codes`, shape (n,)."""
         return np.ascontiguousarray(self._whole["status"])
 
     @property
     def count(self) -> int:
         """Number of finished realisations."""
-        return len(self.indices)
+        return len(self.codes)
 
     @property
     def failed(self) -> int:
         """How many of them failed."""
         return int(np.isin(self.status, list(FAILED_CODES)).sum())
 
-    def between(self, first: int, stop: int) -> np.ndarray:
-        """Places of the finished realisations from `first` up to `stop`, sorted."""
-        return self._whole[np.searchsorted(self.indices, first) : np.searchsorted(self.indices, stop)]
+    def at(self, wanted: np.ndarray) -> np.ndarray:
+        """Places of those among the wanted codes that are finished, sorted."""
+        return self._whole[np.isin(self.codes, wanted, assume_unique=True)]
 
 
 NOTHING = Finished((), np.empty(0, PLACES))
@@ -81,9 +87,9 @@ def one_each(segments: list[Segment], places: np.ndarray) -> np.ndarray:
     """
     is_whole = np.array([segment.is_whole for segment in segments], bool)
     is_by_chance = np.isin(places["status"], list(BY_CHANCE))
-    order = np.lexsort((places["segment"], is_by_chance, ~is_whole[places["segment"]], places["realisation"]))
+    order = np.lexsort((places["segment"], is_by_chance, ~is_whole[places["segment"]], places["code"]))
     places, is_by_chance = places[order], is_by_chance[order]
-    is_repeat = np.concatenate([[False], places["realisation"][1:] == places["realisation"][:-1]])[: len(places)]
+    is_repeat = np.concatenate([[False], places["code"][1:] == places["code"][:-1]])[: len(places)]
     repeats = np.flatnonzero(is_repeat)
     kept = np.flatnonzero(~is_repeat)[np.cumsum(~is_repeat)[repeats] - 1]
     is_to_agree = ~(is_by_chance[kept] | is_by_chance[repeats])
@@ -103,6 +109,6 @@ def _compare(pair: list[Segment], left: np.ndarray, right: np.ndarray) -> None:
     for name, is_different in results.differences(first, second).items():
         at = int(np.argmax(is_different))
         raise RowsDiffer(
-            f"realisation {left['realisation'][at]} has two different rows: {name} is {first[name][at]} in "
+            f"{codes.in_words(left['code'][at])} has two different rows: {name} is {first[name][at]} in "
             f"{pair[0].path} and {second[name][at]} in {pair[1].path}"
         )

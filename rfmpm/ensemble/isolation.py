@@ -11,6 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from rfmpm.ensemble.markers import Task
 from rfmpm.ensemble.stop import SIGNALS
 
 LAUNCHER_VARIABLES = ("PMI", "PMIX", "OMPI", "MPI", "HYDRA", "HYDI", "SLURM", "PBS", "PRTE", "MV2", "I_MPI")
@@ -21,13 +22,13 @@ class ChildDied(RuntimeError):
     """The process of a realisation ended without a result; says how."""
 
 
-def run_apart(study, directory: Path, index: int) -> dict[str, Any]:
+def run_apart(study, directory: Path, task: Task) -> dict[str, Any]:
     """Run a realisation in a new process and wait for it.
 
     Args:
         study: the study.
         directory: of the campaign.
-        index: of the realisation.
+        task: the realisation.
 
     Returns:
         Its row.
@@ -46,7 +47,7 @@ def run_apart(study, directory: Path, index: int) -> dict[str, Any]:
     ) as child:
         try:
             with suppress(BrokenPipeError):
-                child.stdin.write(pickle.dumps((study, Path(directory), index)))
+                child.stdin.write(pickle.dumps((study, Path(directory), task)))
                 child.stdin.flush()  # it stays open: its end tells the child that the parent is gone
             answer = child.stdout.read()
             if child.wait() == 0 and answer:
@@ -86,7 +87,7 @@ def serve() -> None:
         signal.signal(number, signal.SIG_IGN)
     answer = os.dup(1)
     os.dup2(2, 1)  # what a library prints is not the answer
-    study, directory, index = pickle.load(sys.stdin.buffer)
+    study, directory, task = pickle.load(sys.stdin.buffer)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     from threadpoolctl import threadpool_limits
 
@@ -94,8 +95,8 @@ def serve() -> None:
 
     worker = Worker(study, directory)
     with threadpool_limits(limits=1):
-        worker.prepare()
-        row = worker.run_here(index)
+        worker.prepare([task.level])
+        row = worker.run_here(task)
     with os.fdopen(answer, "wb") as file:
         pickle.dump(row, file)
     os._exit(0)  # the thread that waits for the parent's end is not to be waited for

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rfmpm.campaign_status import now
+from rfmpm.ensemble import codes
 
 log = logging.getLogger("rfmpm")
 
@@ -78,9 +79,9 @@ class Journal:
         return written[-1] if written else self.started()
 
     def unfinished_starts(self) -> Counter[int]:
-        """Count, for each realisation, the starts that came to no end because the worker, or the whole job, died."""
+        """Count, by code, the starts that came to no end because the worker, or the whole job, died."""
         starts = {
-            (event["realisation"], event.get("host"), event.get("pid"), event.get("started"))
+            (codes.of_entry(event), event.get("host"), event.get("pid"), event.get("started"))
             for event in self.events("unfinished_start")
         }
-        return Counter(realisation for realisation, *_ in starts)
+        return Counter(code for code, *_ in starts)

@@ -4,11 +4,14 @@ import json
 import logging
 import os
 import platform
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rfmpm.campaign_status import now, replace_text
+from rfmpm.ensemble import codes
 from rfmpm.ensemble.folder import RUNNING
 
 log = logging.getLogger("rfmpm")
@@ -18,8 +21,19 @@ log = logging.getLogger("rfmpm")
 class Task:
     """A realisation to be run, and the how manieth start of it this is, those that were never finished included."""
 
-    realisation: int
+    code: int
     attempt: int = 1
+    xi: np.ndarray | None = field(default=None, compare=False)  # None: drawn from the stream of the index
+
+    @property
+    def level(self) -> int:
+        """On whose cells it is simulated: 0 for the study's own."""
+        return codes.split(self.code)[0]
+
+    @property
+    def realisation(self) -> int:
+        """Its index."""
+        return codes.split(self.code)[1]
 
 
 class Marker:
@@ -38,7 +52,7 @@ class Marker:
             OSError: if it cannot be written.
         """
         content = {
-            "realisation": task.realisation,
+            **codes.as_entry(task.code),
             "attempt": task.attempt,
             "started": now(),
             "host": platform.node(),
@@ -64,7 +78,7 @@ def take_left_behind(directory: Path) -> list[dict[str, Any]]:
     for path in sorted((Path(directory) / RUNNING).glob("*.json")):
         try:
             content = json.loads(path.read_text(encoding="utf-8"))
-            found.append({**content, "realisation": int(content["realisation"]), "rank": int(path.stem)})
+            found.append({**content, **codes.as_entry(codes.of_entry(content)), "rank": int(path.stem)})
         except (ValueError, KeyError, TypeError):
             log.warning("%s was torn: the start that it stood for is not counted", path)
         path.unlink()

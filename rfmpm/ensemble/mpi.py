@@ -105,7 +105,8 @@ class Ranks:
         """
         from rfmpm import realisation  # noqa: F401  (takes a second, in which rank 0 looks at the folder)
 
-        while self._receive(0, _START):
+        while needed := self._receive(0, _START):
+            worker.needed = needed
             worker.work(self.rank, self._claim)
         self._part()
 
@@ -117,7 +118,7 @@ class Ranks:
             dispatcher: of the work.
             renew: called now and then, to keep the status up to date.
         """
-        self._start(True)
+        self._start(worker.needed)
         desk = threading.Thread(target=self._serve, args=(dispatcher, renew), name="dispatcher")
         desk.start()
         try:
@@ -130,16 +131,17 @@ class Ranks:
 
     def close(self) -> None:
         """Let the other ranks go; to be called by rank 0 in any case."""
-        self._start(False)
+        self._start(())
         self._part()
 
     def _part(self) -> None:
         self._meet()
         self.comm.Free()  # MPI has room for some thousand of them only, and a sweep opens one for each cell
 
-    def _start(self, is_to_work: bool) -> None:
+    def _start(self, needed: tuple[int, ...]) -> None:
+        """Let the other ranks work on these levels, or end where there is none."""
         for rank in range(1, self.size):
-            self._send(is_to_work, rank, _START)
+            self._send(needed, rank, _START)
 
     def _serve(self, dispatcher: Dispatcher, renew: Callable[[], None]) -> None:
         # While this runs no other thread of rank 0 calls MPI.

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rfmpm import campaign_status, results
+from rfmpm import campaign_status, planning, results
 from rfmpm.campaign_status import now
 from rfmpm.ensemble import folder, segments
 from rfmpm.ensemble.books import Books
@@ -66,7 +66,7 @@ def merge_parts(parts: Sequence[Path], out: Path) -> Whole:
         for segment in found.segments:
             results.copy_rows(segment.path, out / folder.SEGMENTS)
         start, end = _times([*parts, out])
-        missing = np.setdiff1d(np.arange(study.study.realisations), found.indices)
+        missing = np.setdiff1d(np.arange(study.study.realisations), found.codes)
         journal.write("start", time=start, end=end, parts=[str(part) for part in parts], missing=len(missing))
         if not len(missing):
             _finish(out, study, journal, found, {"start": start, "end": end})
@@ -76,9 +76,12 @@ def merge_parts(parts: Sequence[Path], out: Path) -> Whole:
 
 def _study(part: Path):
     try:
-        return load_study(part / folder.STUDY_FILE)
+        study = load_study(part / folder.STUDY_FILE)
     except (OSError, StudyError) as error:
         raise folder.FolderMismatch(f"{part}: holds no readable {folder.STUDY_FILE} of a campaign") from error
+    if study.study.until is not None:
+        raise folder.FolderMismatch(f"{part}: {planning.NOT_DIVISIBLE}")
+    return study
 
 
 def _times(folders: Sequence[Path]) -> tuple[str, str]:
@@ -92,8 +95,8 @@ def _times(folders: Sequence[Path]) -> tuple[str, str]:
 
 
 def _finish(out: Path, study, journal, found: Finished, times: dict[str, str]) -> None:
-    path, total = out / results.ENSEMBLE_FILE, study.study.realisations
-    content_hash = segments.merge(out, study, journal, total, path, times, known=found)
+    path, wanted = out / results.ENSEMBLE_FILE, np.arange(study.study.realisations)
+    content_hash = segments.merge(out, study, journal, wanted, path, times, found)
     journal.write("stop", complete=True, content_hash=content_hash)
 
 

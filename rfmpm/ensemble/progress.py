@@ -13,24 +13,36 @@ class Progress:
     The clock starts when its context is entered; the display appears at the first `show`.
 
     Args:
-        total: realisations of the campaign.
-        before: how many of them an earlier run finished.
+        total: realisations of the campaign, or of its plan so far.
+        before: how many of them are finished.
         is_shown: False for silence.
     """
 
     def __init__(self, total: int, before: int, is_shown: bool = True):
-        self.total, self.before, self.is_shown = total, before, is_shown
-        self.started = self.last_line = time.monotonic()
-        self.is_complete = False
+        self.is_shown = is_shown
         self.bar = None
+        self.started = self.last_line = time.monotonic()
+        self.begin(total, before)
+
+    def begin(self, total: int, before: int, expected: int | None = None) -> None:
+        """Take up a round.
+
+        Args:
+            total: realisations that are planned so far.
+            before: how many of them are finished.
+            expected: how many there may be in the end; None where that is `total`, or is not known.
+        """
+        self.total, self.before, self.expected = total, before, expected
+        self.is_complete = False
 
     def __enter__(self) -> "Progress":
-        self.started = self.last_line = time.monotonic()
+        self.started = time.monotonic()
         return self
 
     def __exit__(self, *_) -> None:
         if self.bar is not None:
             self.bar.stop()
+            self.bar = None
 
     def show(self, done: int, failed: int) -> None:
         """Bring the display up to date.
@@ -44,7 +56,7 @@ class Progress:
         self.is_complete = self.before + done == self.total
         if sys.stderr.isatty():
             self._show_bar(done, failed)
-        elif self.is_complete or time.monotonic() - self.last_line >= LINE_EVERY:
+        elif (self.is_complete and self.expected is None) or time.monotonic() - self.last_line >= LINE_EVERY:
             self.last_line = time.monotonic()
             print(self.line(done, failed), file=sys.stderr, flush=True)
 
@@ -53,7 +65,8 @@ class Progress:
         left = self.seconds_left(done)
         time_left = "time left unknown" if left is None else f"{timedelta(seconds=round(left))} left"
         rate = f"{self.per_minute(done):.3g} per minute"
-        return f"{self.before + done}/{self.total} realisations, {rate}, {time_left}, {failed} failed"
+        in_all = f" of this round, about {self.expected:,} in all" if self.expected is not None else ""
+        return f"{self.before + done}/{self.total} realisations, {rate}, {time_left}{in_all}, {failed} failed"
 
     def seconds_left(self, done: int) -> float | None:
         """Estimate the time left from the rate of this run.

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from rfmpm import results
+from rfmpm import planning, results
+from rfmpm.ensemble import codes
 from rfmpm.ensemble.finished import NOTHING, PLACES, Finished, Segment, one_each
 from rfmpm.ensemble.folder import QUARANTINE, SEGMENTS, FolderMismatch
 from rfmpm.variables import BY_CHANCE, active_variables
@@ -46,7 +47,7 @@ class SegmentWriter:
             row: of one realisation.
 
         Returns:
-            What was written: at most one entry with the segment's name and its realisations.
+            What was written: at most one entry with the segment's name, its realisations and, if not all 0, levels.
 
         Raises:
             OSError: if the segment cannot be written.
@@ -62,6 +63,8 @@ class SegmentWriter:
         stem = f"{self.rank:05d}-{os.getpid()}-{self.counter:05d}"
         path = results.write_rows(self.folder, stem, results.columns(self.rows, self.study), self.attributes)
         written = {"segment": path.name, "realisations": [int(row["realisation"]) for row in self.rows]}
+        if any(levels := [int(row["level"]) for row in self.rows]):
+            written["levels"] = levels
         self.rows, self.counter, self.since = [], self.counter + 1, time.monotonic()
         return [written]
 
@@ -91,22 +94,30 @@ def finished(directory: Path, study, journal, earlier: Finished = NOTHING) -> Fi
         if path in known or (stored := _valid(path, journal)) is None:
             continue
         _check_origin(path, stored.attributes, physics_hash)
-        found = np.empty(len(stored.columns["realisation"]), PLACES)
-        found["realisation"], found["status"] = stored.columns["realisation"], stored.columns["status"]
-        found["segment"], found["row"] = len(segments), np.arange(len(found))
+        found = _places(stored.columns, study)
+        found["segment"] = len(segments)
         segments.append(Segment(path, _origin(stored.attributes), _is_whole(stored.attributes, study)))
         places.append(found)
     return Finished(tuple(segments), one_each(segments, np.concatenate(places)))
+
+
+def _places(columns: results.Columns, study) -> np.ndarray:
+    """Places of the rows of one segment, whose number is still to be filled in."""
+    found = np.empty(len(columns["realisation"]), PLACES)
+    found["code"] = codes.encoded(columns["level"], columns["realisation"])
+    found["status"], found["row"] = columns["status"], np.arange(len(found))
+    found["value"], found["is_censored"] = planning.outcomes(study, columns)
+    found["step_count"] = np.nan_to_num(columns["step_count"], nan=-1.0)
+    return found
 
 
 def merge(
     directory: Path,
     study,
     journal,
-    total: int,
+    wanted: np.ndarray,
     path: Path,
     attributes: Mapping[str, Any],
-    first: int = 0,
     known: Finished = NOTHING,
 ) -> str:
     """Write the finished rows as one dataset, in bounded memory.
@@ -115,10 +126,9 @@ def merge(
         directory: of the campaign.
         study: the study that is run.
         journal: as for `finished`.
-        total: realisations up to this one are taken, itself not included.
+        wanted: codes of what is taken, sorted, shape (n,).
         path: the file to be written.
         attributes: further global attributes.
-        first: the first realisation that is taken.
         known: what `finished` found before.
 
     Returns:
@@ -130,25 +140,26 @@ def merge(
         FolderMismatch, RowsDiffer: as `finished`.
     """
     found = finished(directory, study, journal, known)
-    places = found.between(first, total)
-    if len(places) < total - first:
-        raise ValueError(f"{directory}: {total - first - len(places)} of {total - first} realisations have no row")
+    places = found.at(wanted)
+    if len(places) < len(wanted):
+        raise ValueError(f"{directory}: {len(wanted) - len(places)} of {len(wanted)} realisations have no row")
     used = np.unique(places["segment"])
     origins = sorted({found.segments[segment].origin for segment in used})
     lines = "\n".join(f"{number}: {origin}" for number, origin in enumerate(origins))
     names = ["realisation", "level", "attempt", *(variable.name for variable in active_variables(study))]
-    described = {**attributes, "origins": lines, **_part(first, total, study)}
+    described = {**attributes, "origins": lines, **_part(wanted, study)}
     return results.write_ensemble(path, study, len(places), _blocks(found, places, origins, names), described)
 
 
-def _part(first: int, total: int, study) -> dict[str, int]:
-    """What a dataset says that holds a part of the study."""
-    if (first, total) == (0, study.study.realisations):
+def _part(wanted: np.ndarray, study) -> dict[str, int]:
+    """What a dataset says that holds a part of a study with a fixed number of realisations."""
+    total = study.study.realisations
+    if total is None or (wanted[0] == 0 and len(wanted) == total):
         return {}
-    return {"first_realisation": first, "realisations_of_study": study.study.realisations}
+    return {"first_realisation": int(wanted[0]), "realisations_of_study": total}
 
 
-def find_row(directory: Path, index: int) -> results.StoredRows:
+def find_row(directory: Path, index: int, level: int = 0) -> results.StoredRows:
     """Read the row of one realisation, of whatever study and version, complete campaign or not.
 
     Of several, one that did not end by chance (a crash, a time limit) comes first.
@@ -156,6 +167,7 @@ def find_row(directory: Path, index: int) -> results.StoredRows:
     Args:
         directory: of the campaign.
         index: of the realisation.
+        level: on whose cells it was simulated; 0 for the study's own.
 
     Returns:
         The row, each column of shape (1,) or (1, bins), and what its segment says about it.
@@ -167,7 +179,7 @@ def find_row(directory: Path, index: int) -> results.StoredRows:
     for path in sorted((Path(directory) / SEGMENTS).glob(f"*{results.ROWS_SUFFIX}")):
         if (stored := _valid(path, None)) is None:
             continue
-        at = np.flatnonzero(stored.columns["realisation"] == index)
+        at = np.flatnonzero((stored.columns["realisation"] == index) & (stored.columns["level"] == level))
         if len(at):
             row = results.StoredRows({name: values[at] for name, values in stored.columns.items()}, stored.attributes)
             if int(row.columns["status"][0]) not in BY_CHANCE:
@@ -175,7 +187,8 @@ def find_row(directory: Path, index: int) -> results.StoredRows:
             by_chance = by_chance or row
     if by_chance is not None:
         return by_chance
-    raise LookupError(f"{directory}: realisation {index} has no row here; has it been run?")
+    which = codes.in_words(codes.LEVEL * level + index)
+    raise LookupError(f"{directory}: {which} has no row here; has it been run?")
 
 
 def _blocks(found: Finished, places: np.ndarray, origins, names) -> Iterator[results.Columns]:

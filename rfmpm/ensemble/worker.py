@@ -3,11 +3,14 @@
 import logging
 import platform
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
+from rfmpm import planning
+from rfmpm.ensemble import codes
 from rfmpm.ensemble.folder import LOGS, WORK
 from rfmpm.ensemble.isolation import ChildDied, run_apart
 from rfmpm.ensemble.markers import Marker, Task
@@ -24,7 +27,7 @@ log = logging.getLogger("rfmpm.worker")
 class Ended:
     """How a realisation ended."""
 
-    realisation: int
+    code: int
     status: int
     reason: str
     wall_time: float  # [s], of all its repetitions
@@ -58,27 +61,32 @@ class Worker:
     def __init__(self, study, directory: Path, stop: Stop | None = None, log_level: str = "warning"):
         self.study, self.directory = study, directory
         self.stop, self.log_level = stop or Stop(), log_level
-        self.prepared = None
+        self.studies = planning.studies_by_level(study)
+        self.needed: tuple[int, ...] = (0,)  # levels that the work to come is on
+        self.prepared: dict[int, Any] = {}  # by level
 
     def __getstate__(self) -> dict:
-        return {**self.__dict__, "prepared": None}  # another process prepares from the store
+        return {**self.__dict__, "prepared": {}}  # another process prepares from the store
 
-    def prepare(self) -> None:
-        """Compile, build the scene and find or make the factor of the field; once per process.
+    def prepare(self, levels: Sequence[int]) -> None:
+        """Compile, build the scene and find or make the factor of the field; once per process and level.
+
+        Args:
+            levels: what is to be prepared; 0 for the study's own cells.
 
         Raises:
             Abandoned: if something asked for the end.
         """
         from rfmpm import realisation
 
-        if self.prepared is None:
+        for level in (level for level in levels if level not in self.prepared):
             # Between these steps only: an exception that a signal raises amid compiling leaves half-made kernels.
             self.stop.abandon_if_requested()
-            prepared = realisation.prepare(self.study, store=self.directory / WORK)
+            prepared = realisation.prepare(self.studies[level], store=self.directory / WORK)
             self.stop.abandon_if_requested()
             realisation.compile_kernels(prepared)
             self.stop.abandon_if_requested()
-            self.prepared = prepared
+            self.prepared[level] = prepared
 
     def work(self, rank: int, claim: Claim) -> None:
         """Run what `claim` hands out until nothing is left or something asks for the end; finished rows are written.
@@ -95,7 +103,7 @@ class Worker:
             try:
                 # Asked to end, it abandons the realisation at hand to a later run; the last report says so.
                 with suppress(Abandoned):
-                    self.prepare()
+                    self.prepare(self.needed)
                     self._loop(writer, marker, claim)
             except Exception as failure:
                 error = described(failure)
@@ -113,28 +121,31 @@ class Worker:
             started = time.perf_counter()
             marker.put(task)
             row = {**self._run(task), "attempt": task.attempt}
-            ended = Ended(task.realisation, int(row["status"]), str(row["status_reason"]), _since(started))
+            ended = Ended(task.code, int(row["status"]), str(row["status_reason"]), _since(started))
             name = STATUS_NAMES[ended.status]
-            log.info("realisation %d: %s in %.3g s %s", ended.realisation, name, ended.wall_time, ended.reason)
+            log.info("%s: %s in %.3g s %s", codes.in_words(task.code), name, ended.wall_time, ended.reason)
             report = Report(ended, writer.add(row))
 
     def _run(self, task: Task) -> Row:
         if task.attempt < ISOLATED_FROM:
-            return self.run_here(task.realisation)
-        log.warning("realisation %d: start %d, in a process of its own", task.realisation, task.attempt)
+            return self.run_here(task)
+        log.warning("%s: start %d, in a process of its own", codes.in_words(task.code), task.attempt)
         started = time.perf_counter()
         try:
             with self.stop.interruptible():
-                return run_apart(self.study, self.directory, task.realisation)
+                return run_apart(self.study, self.directory, task)
         except ChildDied as death:
             reason = f"its process ended in each of {task.attempt} starts, the last one alone in a process: {death}"
-            return failed_row(self.study, task.realisation, "crashed", reason, wall_time=_since(started))
+            return self._crashed(task, reason, started)
 
-    def run_here(self, index: int) -> Row:
+    def _crashed(self, task: Task, reason: str, started: float) -> Row:
+        return failed_row(self.study, task.realisation, "crashed", reason, task.level, _since(started))
+
+    def run_here(self, task: Task) -> Row:
         """Run a realisation in this process, repeated where the study asks for it and it may end otherwise.
 
         Args:
-            index: of the realisation.
+            task: the realisation.
 
         Returns:
             Its row.
@@ -145,20 +156,23 @@ class Worker:
         policy = self.study.failures
         times = 1 + (policy.retries if policy.action == "retry" else 0)
         for repetition in range(1, times + 1):
-            row = self._attempt(index)
+            row = self._attempt(task)
             if row["status"] not in BY_CHANCE:
                 return row
-            log.warning("realisation %d, try %d of %d: %s", index, repetition, times, row["status_reason"])
+            which = codes.in_words(task.code)
+            log.warning("%s, try %d of %d: %s", which, repetition, times, row["status_reason"])
         return row if times == 1 else {**row, "status_reason": f"{row['status_reason']}; tried {times} times"}
 
-    def _attempt(self, index: int) -> Row:
+    def _attempt(self, task: Task) -> Row:
         from rfmpm import realisation
 
-        started = time.perf_counter()
+        started, prepared = time.perf_counter(), self.prepared[task.level]
+        options = planning.run_options(prepared, task.level, task.realisation, task.xi)
         try:
-            return realisation.run(self.prepared, index, watch=self.stop.abandon_if_requested)
+            row = realisation.run(prepared, task.realisation, watch=self.stop.abandon_if_requested, **options)
+            return row if task.level == 0 else planning.with_own_bins(row, self.study)
         except Exception as failure:
-            return failed_row(self.study, index, "crashed", described(failure), wall_time=_since(started))
+            return self._crashed(task, described(failure), started)
 
     @contextmanager
     def _log_of(self, rank: int) -> Iterator[None]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rfmpm.kernel_tools import Vector, zeros
+from rfmpm.kernel_tools import Tensor, Vector, zeros
 from rfmpm.mpm.boundary import WALLS, Walls
 from rfmpm.mpm.cells import Cells, make_cells
 from rfmpm.mpm.energy import elastic_energy
@@ -55,18 +55,46 @@ def build(study) -> Scene:
         The scene, its points under elastic gravity stresses. Where these lie beyond yield, the law takes them back to
         it when the run fills its grid, before the first step: what they exceed it by then sets the body in motion.
     """
-    cell, material = study.discretisation.cell_m, study.material[0]
+    cell = study.discretisation.cell_m
     shape = body(study)
     position, volume = fill(shape.outline, cell, study.discretisation.points_per_cell)
-    density = material.unit_weight_kn_m3 * 1e3 / GRAVITY
-    lame, shear = lame_constants(material.youngs_modulus_kpa * 1e3, material.poissons_ratio)
     kind, per_cell = study.discretisation.shape, study.discretisation.points_per_cell
     axes = Axes(*(build_axis(kind, cell, round(extent / cell), per_cell) for extent in (shape.length, shape.top)))
+    return _scene(study, shape, axes, position, volume)
+
+
+def with_parameters(scene: Scene, study) -> Scene:
+    """Make the scene of a study that differs from the scene's own in numbers of material and boundaries alone.
+
+    Elastic stresses at rest are proportional to the unit weight and do not depend on Young's modulus, so that only
+    another Poisson's ratio takes another solve.
+
+    Args:
+        scene: of the other study.
+        study: the study.
+
+    Returns:
+        The scene.
+    """
+    before, after = scene.material, study.material[0]
+    stress = None
+    if before.poissons_ratio == after.poissons_ratio:
+        factor = after.unit_weight_kn_m3 / before.unit_weight_kn_m3
+        stress = Tensor(*(factor * component for component in scene.points.stress))
+    position = np.column_stack(scene.points.position)
+    return _scene(study, scene.body, scene.axes, position, scene.points.volume.copy(), stress)
+
+
+def _scene(study, shape: Body, axes: Axes, position: np.ndarray, volume: np.ndarray, stress: Tensor | None = None):
+    cell, material = study.discretisation.cell_m, study.material[0]
+    density = material.unit_weight_kn_m3 * 1e3 / GRAVITY
+    lame, shear = lame_constants(material.youngs_modulus_kpa * 1e3, material.poissons_ratio)
     walls = Walls(_wall(study.boundary.base), _wall(study.boundary.sides))
     mass = density * volume
     length = getattr(material, "softening_length_m", None)
     averaged = study.discretisation.volumetric_strain == "cell_mean"
-    stress = elastic_gravity_stress(position, mass, volume, axes, walls, lame, shear, GRAVITY, averaged)
+    if stress is None:
+        stress = elastic_gravity_stress(position, mass, volume, axes, walls, lame, shear, GRAVITY, averaged)
     still = Vector(np.zeros(len(volume)), np.zeros(len(volume)))
     points = Points(Vector(*position.T.copy()), still, mass, volume, stress)
     controls = Controls(

@@ -96,13 +96,14 @@ class Properties:
         return sum(entry.n_variables for entry in self.entries.values())
 
 
-def prepare(study: Any, site: Site, store: Path | None = None) -> Properties:
+def prepare(study: Any, site: Site, store: Path | None = None, known: Properties | None = None) -> Properties:
     """Prepare the random properties of a study.
 
     Args:
         study: `random_field`, `random_field_correlation` and `material` are read.
         site: where they are needed.
         store: as for `field.prepare`.
+        known: properties of another study; what a method prepared there for equal correlation and points serves here.
 
     Returns:
         the prepared properties; those with one correlation on the same points share what a method prepared.
@@ -112,9 +113,10 @@ def prepare(study: Any, site: Site, store: Path | None = None) -> Properties:
         OSError: the store cannot be written.
     """
     entries: dict[str, Property] = {}
+    earlier = known.entries.values() if known is not None else ()
     for name, settings in study.random_field.items():
         material = next(material for material in study.material if material.name == settings.material)
-        before = [part for entry in entries.values() for part in entry.parts]
+        before = [part for entry in (*earlier, *entries.values()) for part in entry.parts]
         try:
             entries[name] = _prepare_property(name, settings, material, site, store, before)
         except ValueError as error:

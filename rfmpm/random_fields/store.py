@@ -39,14 +39,14 @@ def find_or_prepare(
     folder = Path(folder)
     stem = f"{method}-{_fingerprint(method, correlation, points, options)}"
     files = {field: folder / f"{stem}.{field}.npy" for field in chosen.Record._fields}
-    record = _read(chosen.Record, files)
+    record = read(chosen.Record, files)
     if record is not None and chosen.is_intact(record, points):
         return record
     folder.mkdir(parents=True, exist_ok=True)
     fresh = chosen.prepare(correlation, points, **options)
     for field, path in files.items():
-        _write(path, getattr(fresh, field))
-    return _read(chosen.Record, files) or fresh
+        write(path, getattr(fresh, field))
+    return read(chosen.Record, files) or fresh
 
 
 def _fingerprint(method: str, correlation: Correlation, points: np.ndarray, options: Mapping[str, float]) -> str:
@@ -56,14 +56,16 @@ def _fingerprint(method: str, correlation: Correlation, points: np.ndarray, opti
     return hashlib.sha256(described.encode() + points.tobytes()).hexdigest()[:32]
 
 
-def _read(record: type[Any], files: dict[str, Path]) -> Any | None:
+def read(record: type[Any], files: dict[str, Path]) -> Any | None:
+    """Read a record, its arrays mapped from the files of its fields; None where one is missing or damaged."""
     try:
         return record(*(np.asarray(np.load(path, mmap_mode="r")) for path in files.values()))
     except (FileNotFoundError, ValueError, EOFError):
         return None
 
 
-def _write(path: Path, array: np.ndarray) -> None:
+def write(path: Path, array: np.ndarray) -> None:
+    """Write an array so that its file appears whole; OSError if the folder cannot be written."""
     temporary = path.with_name(f"{path.stem}.{uuid4().hex}.tmp")
     try:
         with open(temporary, "xb") as file:

@@ -59,9 +59,11 @@ def write_field(study, index: int, directory: Path) -> list[str]:
         return ["no random field in this study: every realisation is the same"]
     prepared = realisation.prepare(study)
     pairs = [entry.between for entry in study.random_field_correlation or ()]
-    xis = (realisation.draw_xi(prepared, i) for i in range(index, index + SAMPLE))
+    # Statistics are compared for one soil: that of the study's own values, whatever of it is uncertain.
+    first = len(prepared.uncertain)
+    xis = (realisation.draw_xi(prepared, i)[first:] for i in range(index, index + SAMPLE))
     found = compare_properties(prepared.properties, pairs, xis)
-    drawn = properties.realise(prepared.properties, realisation.draw_xi(prepared, index))
+    drawn = properties.realise(prepared.properties, realisation.draw_xi(prepared, index)[first:])
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
     lines, done = [], []

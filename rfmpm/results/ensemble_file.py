@@ -21,7 +21,8 @@ def write_ensemble(
         path: the file; replaced if it exists.
         study: the study its rows belong to.
         total: number of rows.
-        blocks: columns by name, as `columns` makes them and with "origin"; together all rows, sorted by realisation.
+        blocks: columns by name, as `columns` makes them and with "origin"; together all rows, sorted by level
+            and realisation.
         attributes: further global attributes.
 
     Returns:
@@ -41,7 +42,7 @@ def write_ensemble(
             for block in blocks:
                 stop = start + len(block["realisation"])
                 for name, variable in labels.variables.items():
-                    if name != "x":
+                    if "realisation" in variable.dims:
                         file[name][start:stop] = _on_disk(block[name], variable.encoding)
                 start = stop
         with xr.open_dataset(temporary, engine="netcdf4", decode_times=False, decode_timedelta=False) as written:
@@ -72,8 +73,8 @@ def _define(file, labels, total: int) -> None:
         stored.setncatts(variable.attrs)
         if name not in labels.coords:
             stored.coordinates = "level"
-    if "x" in sizes:
-        file["x"][:] = labels["x"].values
+    for name in sizes.keys() - {"realisation"}:
+        file[name][:] = labels[name].values
 
 
 def _on_disk(values: np.ndarray, encoding: Mapping[str, Any]) -> np.ndarray:

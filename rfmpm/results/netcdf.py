@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rfmpm.results.provenance import global_attributes
-from rfmpm.results.row_files import bin_positions, columns, whole_file
+from rfmpm.results.row_files import columns, labels_along, whole_file
 from rfmpm.variables import COORDINATES, PROVENANCE, RUN_DEPENDENT, Variable, active_variables
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def dataset(rows: Sequence[Mapping[str, Any]], study, attributes: Mapping[str, A
         attributes: further global attributes.
 
     Returns:
-        Dataset sorted by realisation; counts and flags are floats with NaN where a realisation failed.
+        Dataset sorted by level and realisation; counts and flags are floats with NaN where a realisation failed.
 
     Raises:
         KeyError: if a row lacks an active variable.
@@ -42,8 +42,8 @@ def dataset(rows: Sequence[Mapping[str, Any]], study, attributes: Mapping[str, A
     data["origin"] = np.zeros(len(rows), "int32")
     active = [*active_variables(study), *PROVENANCE.values()]
     coordinates = {name: data[name] for name in ("realisation", "level")}
-    if any("x" in variable.dims for variable in active):
-        coordinates["x"] = bin_positions(study)
+    for dimension in sorted({name for variable in active for name in variable.dims[1:]}):
+        coordinates[dimension] = labels_along(dimension, study)
     labelled = xr.Dataset(
         {variable.name: labelled_array(variable, data[variable.name], study) for variable in active},
         {name: labelled_array(COORDINATES[name], values, study) for name, values in coordinates.items()},

@@ -48,7 +48,7 @@ class StoredRows:
 
 
 def columns(rows: Sequence[Mapping[str, Any]], study) -> Columns:
-    """Turn rows into columns, sorted by realisation.
+    """Turn rows into columns, sorted by level and realisation.
 
     Args:
         rows: one mapping per realisation with every active variable by name, "realisation" and optionally "level" and
@@ -62,7 +62,7 @@ def columns(rows: Sequence[Mapping[str, Any]], study) -> Columns:
         KeyError: if a row lacks an active variable.
         ValueError: if a surface has another number of bins than the domain.
     """
-    rows = sorted(rows, key=lambda row: int(row["realisation"]))
+    rows = sorted(rows, key=lambda row: (int(row.get("level", 0)), int(row["realisation"])))
     found = {
         "realisation": np.array([row["realisation"] for row in rows], _TYPES["realisation"]),
         "level": np.array([row.get("level", 0) for row in rows], _TYPES["level"]),
@@ -70,8 +70,8 @@ def columns(rows: Sequence[Mapping[str, Any]], study) -> Columns:
     }
     for variable in active_variables(study):
         values = [row[variable.name] for row in rows]
-        is_surface = variable.dims == ("realisation", "x")
-        found[variable.name] = _surfaces(values, study) if is_surface else _column(variable, values)
+        is_wide = len(variable.dims) > 1
+        found[variable.name] = _wide(variable, values, study) if is_wide else _column(variable, values)
     return found
 
 
@@ -81,9 +81,16 @@ def _column(variable: Variable, values: list) -> np.ndarray:
     return np.array(values, _TYPES.get(variable.name, "<f8"))
 
 
-def _surfaces(values: list, study) -> np.ndarray:
-    count = len(bin_positions(study))
+def _wide(variable: Variable, values: list, study) -> np.ndarray:
+    count = len(labels_along(variable.dims[1], study))
     return np.array([np.broadcast_to(np.asarray(value, "<f8"), count) for value in values]).reshape(-1, count)
+
+
+def labels_along(dimension: str, study) -> np.ndarray:
+    """Give the labels of what a row holds several of, shape (k,): bins along `x` [m], keys along `uncertain`."""
+    if dimension == "x":
+        return bin_positions(study)
+    return np.array([entry.key for entry in study.uncertain], dtype=object)
 
 
 def bin_positions(study) -> np.ndarray:

@@ -12,15 +12,24 @@ from rfmpm.study.field_checks import FIELD_CHECKS
 from rfmpm.study.known import Known, Unknown, problem
 from rfmpm.study.layer_checks import LAYER_CHECKS
 from rfmpm.study.material_checks import MATERIAL_CHECKS
+from rfmpm.study.question_checks import QUESTION_CHECKS, level_problems
 from rfmpm.study.size_checks import SIZE_CHECKS
+from rfmpm.study.uncertain_checks import UNCERTAIN_CHECKS, problems_at_the_ends
+
+Check = Callable[[Known], Iterator[Problem]]
 
 LARGEST_CELL_OVER_LENGTH = 1.0  # of a softening length; the transfer itself averages over 0.7 cells
 
 
 def joint_problems(known: Known) -> list[Problem]:
     """Everything that is wrong between keys, as far as their values are known."""
+    found = _problems(known, [*CHECKS, *QUESTION_CHECKS])
+    return found or [*problems_at_the_ends(known, _problems), *level_problems(known, _problems)]
+
+
+def _problems(known: Known, checks: list[Check] | None = None) -> list[Problem]:
     found = []
-    for check in CHECKS:
+    for check in checks or CHECKS:
         problems = check(known)
         while True:
             try:
@@ -92,7 +101,7 @@ def _names_are_unique(known: Known) -> Iterator[Problem]:
             yield problem(known, f"material.{last}.name", f"is the name of {count} materials; names must differ")
 
 
-CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
+CHECKS: list[Check] = [
     *SIZE_CHECKS,
     _residual_is_below_the_peak,
     _softening_does_not_snap_back,
@@ -105,4 +114,5 @@ CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     *FIELD_CHECKS,
     *LAYER_CHECKS,
     *CORRELATION_CHECKS,
+    *UNCERTAIN_CHECKS,
 ]

@@ -90,10 +90,20 @@ def _softening_does_not_snap_back(known: Known) -> Iterator[Problem]:
             yield problem(known, f"{material}.residual_plastic_strain", text)
 
 
+def _factor_of_safety_is_of_an_undrained_slope(known: Known) -> Iterator[Problem]:
+    if not known["quantities.factor_of_safety"]:
+        return
+    laws = {known[f"material.{index}.law"] for index in range(len(known["material"]))}
+    if known["geometry.kind"] != "slope" or laws != {"von_mises"}:
+        text = 'needs geometry.kind = "slope" and a material with law = "von_mises": leave it out'
+        yield problem(known, "quantities.factor_of_safety", text)
+
+
 MATERIAL_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _residuals_are_below_the_peaks,
     _dilation_is_below_friction,
     _there_is_some_strength,
     _softening_says_how_fast,
     _softening_does_not_snap_back,
+    _factor_of_safety_is_of_an_undrained_slope,
 ]

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, Strict
 
 from rfmpm.study.kinds import Inclination, Length, NotNegative, Number, Positive, Table, Text, whole
+from rfmpm.study.question_models import LARGEST_COUNT, Question
 from rfmpm.study.schema import Hint
 
 LARGEST_SEED = 2**63 - 1  # what a NetCDF attribute holds
@@ -15,7 +16,15 @@ class Campaign(Table):
 
     name: Text = Field(description="Title of the study")
     seed: Annotated[int, Strict()] = Field(ge=0, le=LARGEST_SEED, description="Seed of every random stream")
-    realisations: Annotated[int, Strict()] = Field(1, ge=1, le=10_000_000, description="Number of realisations")
+    realisations: Annotated[int, Strict(), Field(ge=1, le=LARGEST_COUNT)] | None = Field(
+        None, description="Number of realisations. Default: 1; or give until"
+    )
+    until: Question | None = Field(None, description="A question to be answered, instead of a number of realisations")
+
+    def model_post_init(self, context: object) -> None:
+        """Let a number of realisations that is not given be 1 where no question decides it."""
+        if self.realisations is None and self.until is None:
+            object.__setattr__(self, "realisations", 1)
 
 
 class SlopeGeometry(Table):
@@ -194,6 +203,11 @@ class Time(Table):
     )
 
 
+def _absent_if_false(value: object) -> object:
+    """A wish that is denied is as if it were not there: the study and its hash stay as they are."""
+    return None if value is False else value
+
+
 class Quantities(Table):
     """[quantities]"""
 
@@ -204,6 +218,9 @@ class Quantities(Table):
     block_plastic_strain: Positive = Field(0.2, description="Plastic strain below which a point belongs to a block [1]")
     block_minimum_area_m2: NotNegative = Field(0.5, description="Area below which a block is not counted [m2]")
     run_out_limit_m: NotNegative = Field(5.0, description="The limit l in P(run-out > l) [m]")
+    factor_of_safety: Annotated[Annotated[bool, Strict()] | None, BeforeValidator(_absent_if_false)] = Field(
+        None, description="Whether rows hold the factor of safety of their field, of an undrained slope"
+    )
     inundation_depth_m: Positive = Field(0.1, description="Depth from which a place counts as inundated [m]")
 
 

@@ -1,5 +1,6 @@
 """Walks the table models along a key's path: what is allowed there, in words, and what the default is."""
 
+import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -10,8 +11,13 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 KeyPath = tuple[str | int, ...]
-BOUNDS = {"ge": "at least", "gt": "greater than", "le": "at most", "lt": "less than"}
-NOUNS = {float: "a number", int: "a whole number", str: "text in quotes, not empty"}
+LIMITS = {  # in words, and whether a value keeps them
+    "ge": ("at least", operator.ge),
+    "gt": ("greater than", operator.gt),
+    "le": ("at most", operator.le),
+    "lt": ("less than", operator.lt),
+}
+NOUNS = {bool: "true or false", float: "a number", int: "a whole number", str: "text in quotes, not empty"}
 
 
 @dataclass(frozen=True)
@@ -116,12 +122,17 @@ def allowed(annotation: Any, info: FieldInfo | None, with_type: bool = True) -> 
     else:
         limits = " and ".join(
             f"{bound} {_figure(getattr(entry, name))}"
-            for name, bound in BOUNDS.items()
+            for name, (bound, _) in LIMITS.items()
             for entry in metadata
             if hasattr(entry, name)
         )
         words = f"{NOUNS[kind]} {limits}".strip() if with_type or not limits else limits
     return f"{words} ({hints})" if hints else words
+
+
+def limits_of(annotation: Any, info: FieldInfo | None, name: str) -> list[float]:
+    """The limits of one kind, a key of LIMITS, on a number."""
+    return [getattr(entry, name) for entry in _metadata(annotation, info) if hasattr(entry, name)]
 
 
 def _figure(limit: float) -> str:

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from numbers import Integral, Real
 from os import PathLike, fspath
@@ -29,11 +29,15 @@ from rfmpm.study.models import (
     Quantities,
     Time,
 )
+from rfmpm.study.question_models import Estimation
 from rfmpm.study.schema import Hint
+from rfmpm.study.uncertain_checks import CAPPED
+from rfmpm.study.uncertain_models import Uncertain
 
 NOT_PHYSICS = (
     ("study", "name"),
     ("study", "realisations"),
+    ("study", "until"),
     ("output", "directory"),
     ("output", "surface_bin_m"),
     ("quantities", "run_out_limit_m"),
@@ -63,6 +67,10 @@ class Study(Table):
     random_field_correlation: tuple[FieldCorrelation, ...] | None = Field(
         None, description="Correlation between random fields; left out: they are independent"
     )
+    uncertain: tuple[Uncertain, ...] | None = Field(
+        None, description="Numbers that are not known exactly, one value for each realisation"
+    )
+    estimator: Estimation | None = Field(None, description="How a campaign answers; left out: plain Monte Carlo")
     time: Time
     quantities: Quantities = Quantities()
     output: Output
@@ -89,8 +97,15 @@ class Study(Table):
     def physics_hash(self) -> str:
         """SHA-256 (hex) of everything that a realisation's result depends on; equal for equal physics."""
         content = self.model_dump(exclude_none=True)
+        aim = content["study"].get("until")
         for *tables, key in NOT_PHYSICS:
             (content[tables[0]] if tables else content).pop(key, None)
+        if self.estimator == Estimation():  # plain Monte Carlo, as without the table
+            del content["estimator"]
+        elif self.estimator and self.estimator.method == "subset_simulation":  # its chains run towards the limit
+            content["estimator"]["aim"] = {
+                key: aim[key] for key in aim if key == "quantity" or key.startswith("exceeds")
+            }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
     def to_toml(self) -> str:
@@ -116,6 +131,30 @@ class Study(Table):
         if unreachable:
             raise StudyError([str(problem) for problem in unreachable])
         return type(self)(**data)
+
+    def with_values(self, values: Sequence[float]) -> "Study":
+        """The study of one realisation: its uncertain numbers have these values, nothing is uncertain or estimated.
+
+        A residual above its peak counts as the peak.
+
+        Args:
+            values: one for each entry of `uncertain` [unit of its key].
+
+        Returns:
+            The study.
+
+        Raises:
+            StudyError: with everything that is wrong with the study at these values.
+        """
+        changes = {entry.key: float(value) for entry, value in zip(self.uncertain, values, strict=True)}
+        for index, material in enumerate(self.material):
+            for residual in CAPPED:
+                path, peak = f"material.{index}.{residual}", residual.removeprefix("residual_")
+                given = changes.get(path, getattr(material, residual, None))
+                most = changes.get(f"material.{index}.{peak}", getattr(material, peak, None))
+                if (path in changes or residual in material.model_fields_set) and given > most:
+                    changes[path] = most
+        return self.with_changes(changes | {"uncertain": None, "estimator": None})
 
     @classmethod
     def json_schema(cls) -> dict:

@@ -20,8 +20,15 @@ REALISATIONS = 60
 LONGEST = 120.0  # seconds; a guard against hanging, not a measure
 
 
-def start(directory: Path, hold_up: float, workers: int = 2, *more: str, **environment: str) -> subprocess.Popen:
-    command = [sys.executable, str(CAMPAIGN), str(directory), str(REALISATIONS), str(workers), str(hold_up), *more]
+def start(
+    directory: Path,
+    hold_up: float,
+    workers: int = 2,
+    *more: str,
+    realisations: str = str(REALISATIONS),
+    **environment: str,
+) -> subprocess.Popen:
+    command = [sys.executable, str(CAMPAIGN), str(directory), realisations, str(workers), str(hold_up), *more]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     return subprocess.Popen(command, **pipes, start_new_session=True, env={**os.environ, **environment})
 

@@ -15,11 +15,14 @@ FLOORS = {
     6.2: ("cost",),
     6: ("ensemble", "report"),
     5.5: ("campaign_status",),
-    5: ("realisation", "results"),
-    4.7: ("outcome",),
+    5.2: ("planning",),
+    5: ("realisation", "results", "field_influence"),
+    4.7: ("outcome", "preparation"),
     4.5: ("observer",),
-    4: ("quantities", "estimators", "sampling", "stability"),
-    3.5: ("random_fields.properties", "random_fields.comparison"),
+    4.2: ("sampling",),  # chains follow the plan of their estimator
+    4: ("quantities", "estimators", "stability"),
+    3.5: ("random_fields.properties", "random_fields.comparison", "random_fields.principal_components"),
+    3.2: ("uncertainty",),
     3: ("mpm.scene", "mpm.solvers", "random_fields.field", "random_fields.statistics"),
     2.5: (
         *("mpm.geometry", "mpm.energy", "mpm.initial_stress"),

@@ -106,7 +106,9 @@ def test_study_is_immutable_and_travels_between_processes(study):
     ("path", "value"),
     [
         (".".join(path), value)
-        for path, value in zip(NOT_PHYSICS, ["other", 7, "elsewhere", 0.5, 2.0, 0.3, {"action": "abort"}], strict=True)
+        for path, value in zip(
+            NOT_PHYSICS, ["other", 7, None, "elsewhere", 0.5, 2.0, 0.3, {"action": "abort"}], strict=True
+        )
     ],
 )
 def test_what_does_not_change_a_realisation_does_not_change_the_hash(study, path, value):

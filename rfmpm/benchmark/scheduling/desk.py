@@ -34,6 +34,6 @@ def open_desk(count: int) -> Answer:
     def answer(worker: int, finished: int | None) -> int | None:
         ended = None if finished is None else Ended(finished, STATUS["ok"], "", 0.0)
         task = dispatcher.answer(worker, Report(ended))
-        return None if task is None else task.realisation
+        return None if task is None else task.code
 
     return answer

@@ -90,7 +90,7 @@ def flood(folder: Path, claims: int) -> None:
         return
     segment = [{"segment": "00001-1-00001-0123456789abcdef.rows", "realisations": list(range(ROWS_PER_SEGMENT))}]
     ended = [Ended(index, STATUS["ok"], "", 0.0) for index in range(claims)]
-    reports = [Report(end, segments=[] if end.realisation % ROWS_PER_SEGMENT else segment) for end in ended]
+    reports = [Report(end, segments=[] if end.code % ROWS_PER_SEGMENT else segment) for end in ended]
     crew._meet()
     sent = [crew.comm.isend(report, 0, mpi._CLAIM) for report in reports]
     for _ in reports:

@@ -25,8 +25,8 @@ def write(study, directory, indices, stem="00000-1-00000", **changes):
     return results.write_rows(directory / "segments", stem, made, results.row_attributes(study))
 
 
-def merge(study, directory, total, name="merged.nc", **options):
-    found = segments.merge(directory, study, None, total, directory / name, {}, **options)
+def merge(study, directory, total, name="merged.nc", first=0):
+    found = segments.merge(directory, study, None, np.arange(first, total), directory / name, {})
     merged = results.open_ensemble(directory / name)
     assert found == merged.attrs["content_hash"] == results.content_hash(merged)
     return merged
@@ -44,14 +44,14 @@ def scattered(study, tmp_path):
 
 def test_indices_and_statuses_are_sorted_and_counted(study, scattered):
     found = segments.finished(scattered, study, None)
-    np.testing.assert_array_equal(found.indices, np.arange(10))
+    np.testing.assert_array_equal(found.codes, np.arange(10))
     assert (found.count, found.failed) == (10, 9)
     assert found.status.tolist() == [STATUS["diverged"]] * 4 + [STATUS["ok"]] + [STATUS["diverged"]] * 5
 
 
 def test_nothing_is_finished_in_an_empty_folder(study, tmp_path):
     found = segments.finished(tmp_path, study, None)
-    assert (found.count, found.failed, found.indices.tolist()) == (0, 0, [])
+    assert (found.count, found.failed, found.codes.tolist()) == (0, 0, [])
 
 
 def test_only_new_segments_are_read_again(study, scattered, monkeypatch):
@@ -61,7 +61,7 @@ def test_only_new_segments_are_read_again(study, scattered, monkeypatch):
     monkeypatch.setattr(results, "read_rows", lambda path: seen.append(path) or read(path))
     after = segments.finished(scattered, study, None, before)
     assert seen == [new]
-    np.testing.assert_array_equal(after.indices, np.arange(12))
+    np.testing.assert_array_equal(after.codes, np.arange(12))
 
 
 @pytest.mark.parametrize("bytes_at_once", [1, 400, 2**26])
@@ -86,7 +86,7 @@ def test_a_part_says_which_it_is(study, scattered):
 
 def test_merging_with_a_gap_is_an_error_and_writes_nothing(study, scattered):
     with pytest.raises(ValueError, match="2 of 12 realisations have no row"):
-        segments.merge(scattered, study, None, 12, scattered / "merged.nc", {})
+        segments.merge(scattered, study, None, np.arange(12), scattered / "merged.nc", {})
     assert not (scattered / "merged.nc").exists()
 
 
@@ -156,7 +156,7 @@ class TestSurfaceAskedForLater:
     def test_the_row_that_has_it_is_taken(self, study, bare, tmp_path):
         write(bare, tmp_path, [0, 1, 2], "00000-1-00000")
         write(study, tmp_path, [2, 1], "00001-1-00000")
-        assert segments.finished(tmp_path, study, None).indices.tolist() == [1, 2]
+        assert segments.finished(tmp_path, study, None).codes.tolist() == [1, 2]
         write(study, tmp_path, [0], "00002-1-00000")
         np.testing.assert_array_equal(merge(study, tmp_path, 3)["final_surface"][:, 0], [0, 1, 2])
         assert "final_surface" not in merge(bare, tmp_path, 3)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from rfmpm import ensemble, realisation, results
+from rfmpm.ensemble.markers import Task
 from rfmpm.ensemble.worker import Worker
 from rfmpm.variables import STATUS, active_variables, failed_row
 
@@ -230,8 +231,9 @@ def test_retry_does_not_repeat_what_would_end_the_same(study, tmp_path, monkeypa
         return failed_row(study, index, "diverged", "energy came from nothing")
 
     worker = Worker(policy(study, action="retry"), tmp_path)
+    worker.prepared[0] = None
     monkeypatch.setattr(realisation, "run", diverges)
-    assert worker.run_here(5)["status"] == STATUS["diverged"]
+    assert worker.run_here(Task(5))["status"] == STATUS["diverged"]
     assert calls == [5]
 
 
@@ -335,11 +337,12 @@ def test_log_of_a_worker_has_a_line_for_each_realisation_if_asked(study, tmp_pat
 
 def test_worker_loads_only_what_it_needs(tmp_path):
     code = (
-        "import sys\nfrom rfmpm.ensemble.worker import Worker\nfrom rfmpm.ensemble.segments import SegmentWriter\n"
+        "import sys\nfrom rfmpm.ensemble.markers import Task\nfrom rfmpm.ensemble.worker import Worker\n"
+        "from rfmpm.ensemble.segments import SegmentWriter\n"
         "from rfmpm.study import load_study\nfrom pathlib import Path\n"
-        f"worker = Worker(load_study({str(COARSE)!r}), Path({str(tmp_path)!r}))\nworker.prepare()\n"
+        f"worker = Worker(load_study({str(COARSE)!r}), Path({str(tmp_path)!r}))\nworker.prepare([0])\n"
         "(worker.directory / 'segments').mkdir()\nwriter = SegmentWriter(worker.directory, worker.study, 0)\n"
-        "writer.add(worker.run_here(0))\nassert writer.flush()\n"
+        "writer.add(worker.run_here(Task(0)))\nassert writer.flush()\n"
         "unneeded = {'matplotlib', 'pandas', 'xarray', 'netCDF4', 'mpi4py', 'rich', 'typer', 'jinja2', 'psutil'}\n"
         "print('loaded:', sorted(unneeded & sys.modules.keys()))"
     )

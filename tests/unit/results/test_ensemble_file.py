@@ -1,11 +1,16 @@
+from pathlib import Path
+
 import netCDF4
 import numpy as np
 import pytest
 
 from rfmpm import results
 from rfmpm.results import netcdf, row_files
-from rfmpm.variables import FAILED, STATUS, VARIABLES, failed_row
+from rfmpm.study import load_study
+from rfmpm.variables import FAILED, STATUS, active_variables, failed_row
 
+COARSE = Path(__file__).parents[2] / "robustness" / "coarse.toml"
+VARIABLES = {variable.name: variable for variable in active_variables(load_study(COARSE))}
 BINS = 16  # the coarse domain is 4 + 4 + 8 m long
 
 
