@@ -7,7 +7,7 @@ from rfmpm.study import Study, load_study
 CONFIG = Path(__file__).parents[3] / "configs" / "short_slope_random.toml"
 FINE, COARSE = 0.25, 0.5  # cells [m]
 NUMBERS = {"fine": 2000, "coarse": 20_000, "latin_hypercube": 6400, "sobol": 6400}  # rows of each campaign
-REPLICATE, COMPONENTS = 64, 32  # of the designs: points of a replicate, principal components that are fixed
+REPLICATE, COMPONENTS = 32, 32  # of the designs: points of a replicate, principal components that are fixed
 
 
 def studies() -> dict[str, Study]:
@@ -21,8 +21,10 @@ def studies() -> dict[str, Study]:
     )
     coarse = base.with_changes({"discretisation.cell_m": COARSE})
     design = {"replicate_size": REPLICATE, "principal_components": COMPONENTS}
-    designed = {
-        name: coarse.with_changes({"estimator": {"sampling": name, **design}}) for name in ("latin_hypercube", "sobol")
+    tables = {"fine": {}, "coarse": {}} | {
+        name: {"estimator": {"sampling": name, **design}} for name in ("latin_hypercube", "sobol")
     }
-    found = {"fine": base, "coarse": coarse, **designed}
-    return {name: study.with_changes({"study.realisations": NUMBERS[name]}) for name, study in found.items()}
+    return {
+        name: (base if name == "fine" else coarse).with_changes({"study.realisations": NUMBERS[name], **table})
+        for name, table in tables.items()
+    }
