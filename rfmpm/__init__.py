@@ -52,12 +52,12 @@ def __dir__() -> list[str]:
 def draw_xi(study: Any, index: int = 0, level: int = 0) -> "np.ndarray":
     """Draw the standard-normal vector from which the fields of one realisation are made.
 
-    It depends on the seed of the study, level and index alone: on no rank and no order.
+    It depends on the study, level and index alone: on no rank and no order. That of level 0 is the campaign's.
 
     Args:
         study: a Study, or anything `load_study` reads.
         index: realisation index.
-        level: level of a multilevel plan; 0 for plain Monte Carlo.
+        level: of the stream of random numbers; 0 for that of the study's campaign, on whatever cells.
 
     Returns:
         `xi`, shape (n_variables,) [-]: one for each uncertain number of the study, in its order, then the parts of the
@@ -65,12 +65,13 @@ def draw_xi(study: Any, index: int = 0, level: int = 0) -> "np.ndarray":
         which nothing is random.
 
     Raises:
-        StudyError: with everything that is wrong with the study.
+        StudyError: with everything that is wrong with the study, or if the realisation follows from others.
     """
-    from rfmpm import realisation
+    from rfmpm import planning, realisation
     from rfmpm.study import load_study
 
-    return realisation.draw_xi(realisation.prepare(load_study(study)), index, level)
+    replay = planning.Replay(load_study(study))
+    return realisation.draw_xi(replay.prepared, index, level) if level else replay.xi(index)
 
 
 def realise_fields(
@@ -81,7 +82,7 @@ def realise_fields(
     Args:
         study: a Study, or anything `load_study` reads.
         index: realisation index.
-        level: level of a multilevel plan; 0 for plain Monte Carlo.
+        level: of the stream of random numbers; 0 for that of the study's campaign, on whatever cells.
         xi: standard-normal vector, shape (n_variables,) [-], in place of the one that `draw_xi` draws.
 
     Returns:
@@ -92,10 +93,13 @@ def realise_fields(
         StudyError: with everything that is wrong with the study.
         ValueError: `xi` has another length than the study's fields take.
     """
-    from rfmpm import realisation
+    from rfmpm import planning, realisation
     from rfmpm.study import load_study
 
-    return realisation.realise_fields(load_study(study), index, level=level, xi=xi)
+    study = load_study(study)
+    if xi is None and not level and not planning.is_random(study):
+        xi = planning.Replay(study).xi(index)
+    return realisation.realise_fields(planning.studies_by_level(study)[0], index, level=level, xi=xi)
 
 
 def simulate(
@@ -113,7 +117,7 @@ def simulate(
     Args:
         study: a Study, or anything `load_study` reads.
         index: realisation index.
-        level: level of a multilevel plan; 0 for plain Monte Carlo.
+        level: of the stream of random numbers; 0 for that of the study's campaign, on whatever cells.
         frames: number of snapshots to keep on the way.
         homogeneous: take the mean strength everywhere, and the study's own value of what is uncertain.
         xi: standard-normal vector in place of the one that `draw_xi` draws, as for `realise_fields`.
@@ -127,10 +131,13 @@ def simulate(
         StudyError: with everything that is wrong with the study, or if there are no threads or more than points.
         ValueError: `xi` has another length than the study's fields take.
     """
-    from rfmpm import realisation
+    from rfmpm import planning, realisation
     from rfmpm.study import load_study
 
-    prepared = realisation.prepare(load_study(study))
+    replay = planning.Replay(load_study(study))
+    prepared = replay.prepared
+    if xi is None and not (level or homogeneous):
+        xi = replay.options(index).get("xi")
     threads = realisation.threads_for(prepared) if threads is None else threads
     return realisation.simulate(
         prepared, index, level=level, frames=frames, homogeneous=homogeneous, xi=xi, threads=threads

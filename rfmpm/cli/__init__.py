@@ -98,11 +98,15 @@ def simulate(
         end("--xi: there is nothing random to make of it; leave the option out", WRONG_STUDY)
     name = "simulation_homogeneous" if homogeneous else f"simulation_{index if xi is None else xi.stem}"
     folder = _writable(out or Path(settings.output.directory) / name)
-    from rfmpm import realisation, report, results
+    from rfmpm import planning, realisation, report, results
 
     frames = frames or (FRAMES_OF_AN_ANIMATION if animate else 0)
-    prepared = realisation.prepare(settings)
-    vector = None if xi is None else _read_xi(xi, prepared)
+    replay = planning.Replay(settings)
+    prepared = replay.prepared
+    if xi is not None:
+        vector = _read_xi(xi, prepared)
+    else:
+        vector = None if homogeneous else replay.options(index).get("xi")
     threads = realisation.threads_for(prepared) if threads is None else threads
     outcome = realisation.simulate(prepared, index, frames=frames, homogeneous=homogeneous, xi=vector, threads=threads)
     written = [folder / "simulation.nc", folder / "simulation.png"]

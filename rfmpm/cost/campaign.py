@@ -14,7 +14,7 @@ from rfmpm import planning, realisation
 from rfmpm.cost import results as files_of_results
 from rfmpm.cost import trial
 from rfmpm.ensemble.processes import available_processors
-from rfmpm.report.numbers import PICTURED
+from rfmpm.report.numbers import MOST_PICTURED
 
 UNKNOWN_ERROR = 0.5  # where a single realisation was tried, or none [-]
 UNKNOWN_COUNT = 1000  # of realisations, where nothing of what is said depends on it
@@ -154,7 +154,7 @@ def _times(trials: Trials, count: int, workers: int) -> dict[str, int | float]:
     seconds, at_most = _durations(trials), trials.seconds(trials.steps_at_most)
     mean, longest = float(seconds.mean()), float(seconds.max())
     before = trials.preparation + trials.speed.start
-    pictured = min(count, len(PICTURED))
+    pictured = min(count, MOST_PICTURED)
     after = trials.files.report_seconds + pictured * mean
     campaign = before + makespan(mean, longest, count, workers) + after
     error = relative_error(seconds, count)

@@ -53,7 +53,10 @@ def allocate(nested: Nested, work: Sequence[float], levels: Sequence[int]) -> Al
         variance = np.maximum(variance, 1.0 / max(present.size, 1))
     cost = np.array([work[level] for level in levels], float)
     share = np.sqrt(np.maximum(variance, 1e-6 * max(total[-1], 1e-300)) / cost)
-    ratio = np.maximum.accumulate(np.minimum(share / share[0], LARGEST_RATIO))
+    # Whole powers of 2: numbers that followed the variances closely would be larger where the values so far are by
+    # chance, and such a dilution of some outcomes only is a bias. The variance is a few per cent above the least.
+    powers = np.round(np.log2(np.clip(share / share[0], 1.0, LARGEST_RATIO)))
+    ratio = np.maximum.accumulate(2.0**powers)
     return Allocation(tuple(levels), ratio, np.maximum(variance, 0.0))
 
 

@@ -71,6 +71,7 @@ class SubsetRun:
     sizes: Sizes
     limit: float
     levels: list[Level] = field(default_factory=list)
+    above: float = -np.inf  # threshold of the level under way
     width: float = FIRST_WIDTH  # of a step, between 0 and 1: 1 forgets where it came from
     is_finished: bool = False
     states: np.ndarray | None = None  # index of the run that gave the last state of each chain
@@ -89,26 +90,21 @@ class SubsetRun:
         if self.states is None:
             self._end_level(Level(-np.inf, values[batch][:, None], batch, self.n_failed), batch)
             return
-        is_accepted = values[batch] > self.threshold
+        is_accepted = values[batch] > self.above
         self.states = np.where(is_accepted, batch, self.states)
         gain = (is_accepted.mean() - BEST_ACCEPTANCE) / np.sqrt(len(self.steps))
         self.width = min(1.0, self.width * float(np.exp(gain)))
         self.steps.append(self.states)
         if len(self.steps) == self.sizes.length:
             states = np.column_stack(self.steps)
-            self._end_level(Level(self.threshold, values[states], self.seed, self.n_failed), states.ravel())
-
-    @property
-    def threshold(self) -> float:
-        """Threshold of the level under way."""
-        return self.levels[-1].threshold(self.sizes.chains)
+            self._end_level(Level(self.above, values[states], self.seed, self.n_failed), states.ravel())
 
     def _end_level(self, level: Level, states: np.ndarray) -> None:
         self.levels.append(level)
         self.n_failed = 0
-        threshold = self.threshold
-        best = np.flatnonzero(level.values.ravel() > threshold)
-        if threshold >= self.limit or best.size == 0:
+        self.above = level.threshold(self.sizes.chains)
+        best = np.flatnonzero(level.values.ravel() > self.above)
+        if self.above >= self.limit or best.size == 0:
             self.is_finished = True
             return
         # Where values are tied fewer are above the threshold than there are chains: some then share a seed.

@@ -21,13 +21,13 @@ class Counts:
     Attributes:
         scale: factor with which the mean difference enters the estimate, shape (k,) [-].
         plus: number of differences +1, shape (k,).
-        minus: number of differences -1, shape (k,).
+        minus: number of differences -1, shape (k,); None where there is nothing to subtract and so no difference -1.
         n: number of differences.
     """
 
     scale: np.ndarray
     plus: np.ndarray
-    minus: np.ndarray
+    minus: np.ndarray | None
     n: int
 
 
@@ -122,9 +122,10 @@ def _corrected(half: np.ndarray, counts: tuple[Counts, ...], confidence: float) 
     z = ndtri(0.5 + confidence / 2.0)
     wald, down, up = (np.zeros(half.shape) for _ in range(3))
     for count in counts:
-        plus, minus = count.plus / count.n, count.minus / count.n
-        plus_lower, plus_upper = wilson(count.plus, count.n, confidence)
-        minus_lower, minus_upper = wilson(count.minus, count.n, confidence)
+        plus, (plus_lower, plus_upper) = count.plus / count.n, wilson(count.plus, count.n, confidence)
+        minus = minus_lower = minus_upper = np.zeros(half.shape)
+        if count.minus is not None:
+            minus, (minus_lower, minus_upper) = count.minus / count.n, wilson(count.minus, count.n, confidence)
         wald += (count.scale * z) ** 2 * (plus + minus - (plus - minus) ** 2) / count.n
         up += count.scale**2 * ((plus_upper - plus) ** 2 + (minus - minus_lower) ** 2)
         down += count.scale**2 * ((plus - plus_lower) ** 2 + (minus_upper - minus) ** 2)
@@ -133,5 +134,5 @@ def _corrected(half: np.ndarray, counts: tuple[Counts, ...], confidence: float) 
 
 def _replaced(half: np.ndarray, wald: np.ndarray, score: np.ndarray) -> np.ndarray:
     """Half width with Wald's part of its square replaced by the score interval's."""
-    shrunk = half * np.sqrt(score / np.where(wald > 0.0, wald, 1.0))
-    return np.where(score >= wald, np.sqrt(half**2 + np.maximum(score - wald, 0.0)), shrunk)
+    share = np.where(wald > 0.0, score / np.where(wald > 0.0, wald, 1.0), 1.0)
+    return np.where(share >= 1.0, np.sqrt(half**2 + np.maximum(score - wald, 0.0)), half * np.sqrt(share))

@@ -70,7 +70,7 @@ def discretisation(
     cells = tuple(float(h) for h in cells_m[: outcome.shape[1]])
     steps = np.diff(outcome, axis=1)  # coarser less finer
     order, is_observed, note = _order(steps, cells)
-    factor = -1.0 / ((cells[1] / cells[0]) ** order - 1.0)
+    factor = 1.0 / ((cells[1] / cells[0]) ** order - 1.0)
     unit = factor * steps[:, :1] / n
     found = Contributions(unit, np.zeros(n, int), np.zeros(1)).expectation(confidence, is_probability=False)
     value, error, lower, upper = (float(column[0]) for column in found)

@@ -193,8 +193,8 @@ def contributions(nested: Nested) -> Contributions:
     counts = []
     for level, (difference, scale) in enumerate(zip(found.difference, found.scale, strict=True)):
         difference = difference[present] if level == 0 else difference
-        signs = ((difference > 0.0).sum(axis=0), (difference < 0.0).sum(axis=0))
-        counts.append(Counts(scale, *signs, len(difference)))
+        minus = None if level + 1 == len(outcome) else (difference < 0.0).sum(axis=0)
+        counts.append(Counts(scale, (difference > 0.0).sum(axis=0), minus, len(difference)))
     return Contributions(unit, _merged(stratum), np.zeros(k), tuple(counts) if nested.is_probability else ())
 
 

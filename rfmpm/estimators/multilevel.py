@@ -8,6 +8,7 @@ import numpy as np
 from rfmpm.estimators.allocation import Allocation, choose_levels
 from rfmpm.estimators.contributions import Contributions
 from rfmpm.estimators.levels import FOLDS, Nested, contributions
+from rfmpm.estimators.monte_carlo import Estimate
 from rfmpm.estimators.question import Exceedances, Functions, Question, Value
 from rfmpm.estimators.rows import Rows
 from rfmpm.estimators.staged import LEAST_GROWTH, Staged
@@ -133,6 +134,15 @@ class Multilevel(Staged):
             numbers[level] = n if n >= most + 2 else 0
             most = max(most, numbers[level])
         return rows.first(numbers)
+
+    def notes(self, rows: Rows, found: Estimate) -> list[str]:
+        """Return what must be known to read an estimate, the number of simulations on each level first."""
+        used = self.used(rows)
+        levels, numbers = np.unique(used.level, return_counts=True)
+        coarser = [
+            f"{number} on coarser cells no. {level}" for level, number in zip(levels, numbers, strict=True) if level
+        ]
+        return [*(["with " + ", ".join(coarser)] if coarser else []), *super().notes(rows, found)]
 
     def contributions(self, outcome: np.ndarray, rows: Rows, functions: Functions) -> Contributions:
         """Return what every index adds, with the coefficients of its fold."""

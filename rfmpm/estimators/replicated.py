@@ -69,6 +69,6 @@ class Replicated(Staged):
         counts = ()
         if functions.is_probability and present.any():
             plus = total.sum(axis=0)
-            counts = (Counts(np.ones(plus.shape), plus, np.zeros(plus.shape), int(present.sum())),)
+            counts = (Counts(np.ones(plus.shape), plus, None, int(present.sum())),)
         stratum = np.zeros(len(means), int)
         return Contributions(means / max(len(means), 1), stratum, np.zeros(outcome.shape[1]), counts)

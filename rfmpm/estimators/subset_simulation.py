@@ -209,9 +209,9 @@ def _plateau(runs: list[SubsetRun], limit: float) -> list[str]:
 
 def _notes(runs: list[SubsetRun], limit: float) -> list[str]:
     notes = _plateau(runs, limit)
-    unfinished = [run for run in runs if not run.is_finished and run.levels[-1].threshold(run.sizes.chains) < limit]
+    unfinished = [run for run in runs if not run.is_finished and run.above < limit]
     if unfinished:
-        reached = max(run.levels[-1].threshold(run.sizes.chains) for run in unfinished)
+        reached = max(run.above for run in unfinished)
         notes.append(
             f"the limit was not reached: levels end at {reached:.4g}, and the interval beyond it rests on few runs; "
             "raise study.until.at_most"

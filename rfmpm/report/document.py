@@ -1,21 +1,17 @@
 """The report of a campaign: one page that needs nothing but itself, and the same numbers as JSON."""
 
 import json
-import math
-from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
-from rfmpm.report import snapshots, words
-from rfmpm.report.numbers import Numbers, analyse, as_json, usable
-from rfmpm.report.question import NAMES, answer, question, reservations
-
-MOST_REASONS = 20  # rows of the table of failures; report.json has all
-QUALITY_NAMES = {
-    "plastic_work_share": "work of plastic flow",
-    "friction_work_share": "work of friction on base and sides",
-    "numerical_dissipation_share": "energy dissipated by the method itself",
-    "energy_balance_error": "energy not accounted for",
-}
+from rfmpm import planning
+from rfmpm.report import answer, sections, snapshots, words
+from rfmpm.report.answering import Answers
+from rfmpm.report.costs import WATTS_PER_CORE
+from rfmpm.report.driving import Drivers, drivers
+from rfmpm.report.members import usable
+from rfmpm.report.numbers import CONFIDENCE, Numbers, analyse, as_json
+from rfmpm.report.question import NAMES, background, setting
 
 
 def write(directory: Path | str, out: Path | str | None = None, simulate: snapshots.Simulate | None = None) -> Path:
@@ -41,92 +37,80 @@ def write(directory: Path | str, out: Path | str | None = None, simulate: snapsh
     study_file = directory / "study.toml"
     study = load_study(study_file)
     numbers = analyse(dataset, study)
-    simulate = simulate or snapshots.simulator(study)
-    states = snapshots.take(numbers.pictured, directory / "snapshots", study.physics_hash, simulate)
+    replay = None if simulate else _replay(dataset, study)
+    driven = drivers(dataset, study, Answers(dataset, study, CONFIDENCE), replay)
+    simulate = simulate or snapshots.simulator(replay)
+    states = snapshots.take(_to_picture(numbers), directory / "snapshots", study.physics_hash, simulate)
     page = Path(out) if out is not None else directory / "report.html"
-    html = _page(dataset, study, numbers, states, study_file.read_text(encoding="utf-8"))
+    html = _page(dataset, study, numbers, states, driven, study_file.read_text(encoding="utf-8"))
     snapshots.write_atomically(page, html.encode("utf-8"))
-    numbers_text = json.dumps(_record(dataset, study, numbers, states), indent=1, allow_nan=False)
+    numbers_text = json.dumps(_record(dataset, study, numbers, states, driven), indent=1, allow_nan=False)
     snapshots.write_atomically(page.with_suffix(".json"), numbers_text.encode("utf-8"))
     return page
 
 
-def _page(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], study_text: str) -> str:
+def _to_picture(numbers: Numbers) -> list[tuple[str, int, float]]:
+    """The realisations at ranks of run-out, then those typical of a kind of failure; one that serves twice is once."""
+    known = {index for _, index, _ in numbers.pictured}
+    typical = [(m.name, m.typical, m.run_out) for m in numbers.modes if m.typical is not None]
+    return [*numbers.pictured, *(member for member in typical if member[1] not in known)]
+
+
+def _replay(dataset, study) -> planning.Replay:
+    """Makes realisations again; nothing is prepared before the first one."""
+    return planning.Replay(study, planning.rows_of(study, dataset) if planning.has_chains(study) else None)
+
+
+def _page(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], driven: Drivers, study_text: str) -> str:
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    from rfmpm.mpm.scene import outline
-    from rfmpm.report.probability_figures import charts, unvarying
-    from rfmpm.report.slope_figures import slope_pictures
+    from rfmpm.report.histograms import unvarying
+    from rfmpm.report.probability_figures import charts
 
-    rows = usable(dataset)
+    rows = usable(dataset, study)
+    slopes, thumbnails = _pictures(study, numbers, states)
     environment = Environment(loader=PackageLoader("rfmpm", "report"), autoescape=True, undefined=StrictUndefined)
+    environment.filters["kept"] = words.kept_together
     return environment.get_template("report.html").render(
         title=study.study.name,
-        question=question(study),
-        answer=answer(numbers),
-        reservations=reservations(numbers, study),
-        cards=_cards(numbers),
+        seed=study.study.seed,
+        question=numbers.asked.sentence,
+        setting=setting(study),
+        headline=answer.headline(numbers),
+        certainty=answer.certainty(numbers, study),
+        parts=sections.error_parts(numbers, study) if numbers.completed else [],
+        basis=answer.basis(numbers, study),
+        warnings=answer.warnings(numbers, study),
+        next_steps=numbers.next_steps,
+        background=background(study),
+        details=answer.details(numbers),
+        precision=sections.precision(numbers),
         charts=charts(rows, numbers),
         unvarying=unvarying(rows),
-        slopes=slope_pictures(states, outline(study)) if states else [],
+        modes=sections.mode_cards(numbers, thumbnails),
+        slopes=slopes,
+        drivers=driven.pictures,
+        safety=sections.safety(numbers),
         statuses=[(NAMES.get(name, name), count) for name, count in numbers.statuses.items()],
-        reasons=_reasons(numbers),
-        quality=_quality(numbers),
-        cost=_cost(numbers),
+        reasons=sections.reasons(numbers),
+        quality=sections.quality(numbers),
+        cost=sections.costs(numbers),
         study_text=study_text,
         versions=_versions(dataset),
     )
 
 
-def _cards(numbers: Numbers) -> list[tuple[str, str, str]]:
-    """Label, number and remark of the tiles at the top."""
-    mean, probability = numbers.mean_run_out, numbers.exceedance
-    failed = numbers.used - numbers.completed
-    return [
-        (
-            f"P(run-out > {numbers.limit:g} m)",
-            words.share(probability.value),
-            words.share_interval(probability),
-        ),
-        ("mean run-out", words.with_unit(mean.value, "m"), words.interval(mean, "m")),
-        ("did not complete", f"{failed} of {numbers.used}", words.count(numbers.used, "realisation")),
-        (
-            "computing time",
-            words.duration(numbers.cost["computing"]),
-            f"{words.duration(numbers.cost['per_realisation'])} per realisation",
-        ),
-    ]
+def _pictures(study, numbers: Numbers, states: list[snapshots.Snapshot]):
+    """Large pictures of the realisations at ranks of run-out, and a thumbnail by kind of failure."""
+    from rfmpm.mpm.scene import outline
+    from rfmpm.report.slope_figures import slope_pictures
 
-
-def _reasons(numbers: Numbers) -> dict:
-    """Status, reason, how many and the first indices, the most frequent first; and how many kinds are left out."""
-    groups = Counter((status, reason) for _, status, reason in numbers.reasons)
-    rows = []
-    for (status, reason), count in groups.most_common(MOST_REASONS):
-        indices = [str(index) for index, *kind in numbers.reasons if tuple(kind) == (status, reason)]
-        shown = ", ".join(indices[:8]) + (" ..." if len(indices) > 8 else "")
-        rows.append((NAMES.get(status, status), reason or "no reason recorded", count, shown))
-    return {"rows": rows, "left_out": max(0, len(groups) - MOST_REASONS)}
-
-
-def _quality(numbers: Numbers) -> list[tuple[str, str, str]]:
-    return [
-        (QUALITY_NAMES[name], _percent(values["median"]), _percent(values["worst"]))
-        for name, values in numbers.quality.items()
-    ]
-
-
-def _percent(value: float) -> str:
-    return "unknown" if math.isnan(value) else f"{words.number(100.0 * value, 2)} %"
-
-
-def _cost(numbers: Numbers) -> list[tuple[str, str]]:
-    labels = {
-        "computing": "computing time of all realisations together",
-        "per_realisation": "computing time of one realisation, mean",
-        "elapsed": "from start to end of the campaign",
-    }
-    return [(label, words.duration(numbers.cost[name])) for name, label in labels.items() if name in numbers.cost]
+    if not states:
+        return [], {}
+    by_index = {state.index: state for state in states}
+    typical = [replace(by_index[m.typical], name=m.name) for m in numbers.modes if m.typical is not None]
+    large, small = slope_pictures(states[: len(numbers.pictured)], typical, outline(study))
+    return large, {picture.title: picture for picture in small}
 
 
 def _versions(dataset) -> list[tuple[str, str]]:
@@ -134,13 +118,23 @@ def _versions(dataset) -> list[tuple[str, str]]:
     return [(name.replace("_", " "), str(value)) for name, value in dataset.attrs.items() if name != "study"]
 
 
-def _record(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot]) -> dict:
-    pictured = [
-        {"which": s.name, "realisation": s.index, "run_out_recorded": s.recorded, "run_out_repeated": s.found}
-        for s in states
-    ]
-    record = {"study": study.study.name, **as_json(numbers), "pictured": as_json(pictured)}
+def _record(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], driven: Drivers) -> dict:
+    record = {
+        "study": study.study.name,
+        "question": numbers.asked.sentence,
+        "headline": answer.headline(numbers),
+        "warnings": answer.warnings(numbers, study),
+        **as_json(numbers),
+    }
+    record["pictured"] = as_json(
+        [
+            {"which": s.name, "realisation": s.index, "run_out_recorded": s.recorded, "run_out_repeated": s.found}
+            for s in states
+        ]
+    )
     record["reasons"] = [
         {"realisation": index, "status": status, "reason": reason} for index, status, reason in numbers.reasons
     ]
+    record["sensitivity"] = as_json(driven.numbers)
+    record["watts_per_core_assumed"] = WATTS_PER_CORE
     return record | {"provenance": {name: as_json(value) for name, value in dataset.attrs.items()}}

@@ -2,44 +2,66 @@
 
 import math
 from dataclasses import asdict, dataclass, is_dataclass
-from datetime import datetime
 
 import numpy as np
 
 from rfmpm import estimators
 from rfmpm.estimators.curves import Band
+from rfmpm.estimators.discretisation import Discretisation
 from rfmpm.estimators.intervals import clopper_pearson
+from rfmpm.quantities.failure_mode import MODES
+from rfmpm.report.answering import Answers
+from rfmpm.report.asked import Asked, asked
+from rfmpm.report.budget import Budget, Standing, budget, next_steps
+from rfmpm.report.costs import cost
+from rfmpm.report.members import censored_members, first_index, flagged, reasons, statuses, usable
+from rfmpm.report.modes import Mode, modes
+from rfmpm.report.safety import Safety, safety
 
 CONFIDENCE = 0.95
-SPREAD = ("run_out", "failure_volume", "retrogression_distance")
 QUALITY = ("plastic_work_share", "friction_work_share", "numerical_dissipation_share", "energy_balance_error")
 MOST_POINTS = 2000  # of a curve; more would be seen in no picture and make report.json large
 BLOCK = 2**16  # rows whose surfaces are looked at together
 PICTURED = (("median", 0.5), ("95th percentile", 0.95), ("worst", 1.0))
+MOST_PICTURED = len(PICTURED) + len(MODES)  # a typical member of each kind of failure, too
 
 
 @dataclass(frozen=True)
 class Numbers:
     """What the report says, as numbers in SI units."""
 
-    held: int  # rows in the dataset
+    asked: Asked
+    answer: estimators.Estimate
+    budget: Budget
+    discretisation: Discretisation | None
+    next_steps: list[str]
+    is_random: bool  # whether realisations differ
+    is_plain: bool  # whether they are independent and all on the study's own cells
+    coarser: int  # rows on coarser cells
+    held: int  # rows in the dataset, on the study's own cells
     first: int  # index of the first row: 0 but in a part of a study
     used: int  # rows the estimates rest on: indices from the first on without a gap
     completed: int
-    limit: float  # [m]
+    beyond: int  # of them beyond the limit; 0 unless a probability is asked
+    limit: float  # of the run-out [m]
     mean_run_out: estimators.Estimate  # [m]
     exceedance: estimators.Estimate  # P(run-out > limit) [-]
     failing: estimators.Estimate  # P(any soil fails) [-]
     quantiles: dict[str, estimators.Estimate]  # of run-out [m]
+    given_failure: dict[str, estimators.Estimate]  # of the run-out of slopes that fail: exceedance [-], median [m]
+    modes: list[Mode]
+    safety: Safety | None  # factors of safety beside failures
     statuses: dict[str, int]
     reasons: list[tuple[int, str, str]]  # realisation, status, reason, of all that are not "ok"
     censored: int
+    at_back: int  # slides that met the edge behind the crest
     quality: dict[str, dict[str, float]]
-    cost: dict[str, float]  # [s]
+    cost: dict[str, float]  # [s], [J]
     pictured: list[tuple[str, int, float]]  # which, realisation, run-out [m]
-    curve: Band | None  # P(run-out > l) over l [m]
-    running_mean: Band  # over the number of realisations [m]
-    running_exceedance: Band  # over the number of realisations [-]
+    curve: Band | None  # P(quantity asked > l) over l [m or m3/m]
+    running_mean: Band  # of the quantity asked, over the number of realisations [m or m3/m]
+    running_exceedance: Band | None  # over the number of realisations [-]
+    settling: Band | None  # the answer over the number of realisations, where no running estimate shows it
     inundation_depth: float  # [m]
     inundation: Band | None  # probability over the distance beyond the toe [m]
 
@@ -54,50 +76,94 @@ def analyse(dataset, study) -> Numbers:
     Returns:
         Numbers.
     """
-    rows = usable(dataset)
-    run_out, censored = rows["run_out"].values, censored_members(rows)
-    limit = float(study.quantities.run_out_limit_m)
-    counts = _thinned(np.arange(1, run_out.size + 1))
+    rows, answers = usable(dataset, study), Answers(dataset, study, CONFIDENCE)
     return Numbers(
-        held=dataset.sizes["realisation"],
+        **_answer(rows, study, answers),
+        **_of_run_out(rows, study, answers),
+        **_curves(rows, study, answers),
+        coarser=int(np.sum(dataset["level"].values > 0)),
+        held=int(np.sum(dataset["level"].values == 0)),
         first=first_index(dataset),
-        used=rows.sizes["realisation"],
-        completed=int(np.sum(~np.isnan(run_out))),
-        limit=limit,
-        mean_run_out=estimators.mean(run_out, CONFIDENCE, censored),
-        exceedance=estimators.exceedance(run_out, limit, censored, CONFIDENCE),
-        failing=estimators.exceedance(rows["failure_volume"].values, 0.0, censored, CONFIDENCE),
-        quantiles={
-            name: estimators.quantile(run_out, p, censored, CONFIDENCE) for name, p in (("median", 0.5), ("p95", 0.95))
-        },
-        statuses=_statuses(rows),
-        reasons=_reasons(rows),
-        censored=int(np.sum(censored & ~np.isnan(run_out))),
+        modes=modes(rows, CONFIDENCE),
+        safety=safety(rows, CONFIDENCE),
+        statuses=statuses(rows),
+        reasons=reasons(rows),
         quality={name: _median_and_worst(rows[name].values) for name in QUALITY if name in rows},
-        cost=_cost(dataset),
+        cost=cost(dataset),
         pictured=_pictured(rows),
-        curve=_curve(run_out, censored, limit),
-        running_mean=estimators.running_mean(run_out, CONFIDENCE, counts),
-        running_exceedance=estimators.running_exceedance(run_out, limit, censored, CONFIDENCE, counts),
-        inundation_depth=float(study.quantities.inundation_depth_m),
-        inundation=_inundation(rows, study),
     )
 
 
-def usable(dataset):
-    """Return the rows with indices 0, 1, 2, ... up to the first gap, in this order (xarray.Dataset).
+def _answer(rows, study, answers: Answers) -> dict:
+    """The answer, its error and what to do next."""
+    question = asked(answers.question)
+    values, censored = rows[question.quantity].values, censored_members(rows, question.quantity)
+    completed = ~np.isnan(values)
+    answer, cells = answers.estimate(answers.rows), answers.discretisation()
+    parts = budget(answer, answers.without_failures(), cells, question)
+    beyond = (values > question.limit) | censored if question.is_probability else np.zeros(values.size, bool)
+    counts = {"used": values.size, "completed": int(completed.sum()), "beyond": int(np.sum(beyond & completed))}
+    standing = Standing(
+        question,
+        answer,
+        parts,
+        is_random=bool(study.random_field or study.uncertain),
+        at_back=int(np.sum(flagged(rows, "retrogression_censored") & completed)),
+        at_front=int(np.sum(flagged(rows, "run_out_censored") & completed)),
+        wanted=answers.question.wanted_half_width(answer.value),
+        **counts,
+    )
+    return counts | {
+        "asked": question,
+        "answer": answer,
+        "budget": parts,
+        "discretisation": cells,
+        "next_steps": next_steps(standing, study),
+        "is_random": standing.is_random,
+        "is_plain": answers.is_plain,
+        "at_back": standing.at_back,
+    }
 
-    Those of a part of a study begin with its own first index.
-    """
-    indices = dataset["realisation"].values
-    if np.any(np.diff(indices) < 0):
-        dataset = dataset.sortby("realisation")
-    return dataset.isel(realisation=slice(estimators.contiguous_prefix(indices - first_index(dataset))))
+
+def _of_run_out(rows, study, answers: Answers) -> dict:
+    """What is said of the run-out, whatever the question."""
+    run_out, censored = rows["run_out"].values, censored_members(rows)
+    limit, volume = float(study.quantities.run_out_limit_m), rows["failure_volume"].values
+    fails = (volume > 0.0) | np.isnan(run_out)  # what did not complete may have failed: it counts both ways
+    every = answers.rows_of("run_out")
+    ask = {"quantity": "run_out", "limit": limit, "probability": None}
+    return {
+        "limit": limit,
+        "mean_run_out": answers.estimate(every, **ask | {"kind": "mean"}),
+        "exceedance": answers.estimate(every, **ask | {"kind": "exceedance"}),
+        "failing": answers.estimate(answers.rows_of("failure_volume"), **ask | {"kind": "exceedance", "limit": 0.0}),
+        "quantiles": {
+            name: answers.estimate(every, **ask | {"kind": "quantile", "probability": p})
+            for name, p in (("median", 0.5), ("p95", 0.95))
+        },
+        "given_failure": {
+            "exceedance": estimators.exceedance(run_out[fails], limit, censored[fails], CONFIDENCE),
+            "median": estimators.quantile(run_out[fails], 0.5, censored[fails], CONFIDENCE),
+        },
+        "censored": int(np.sum(censored & ~np.isnan(run_out))),
+    }
 
 
-def first_index(dataset) -> int:
-    """Return the index of the first realisation that the dataset is to hold: 0 but in a part of a study."""
-    return int(dataset.attrs.get("first_realisation", 0))
+def _curves(rows, study, answers: Answers) -> dict:
+    question = answers.question
+    values, censored = rows[question.quantity].values, censored_members(rows, question.quantity)
+    counts = _thinned(np.arange(1, values.size + 1))
+    running = None
+    if question.kind == "exceedance":
+        running = estimators.running_exceedance(values, question.limit, censored, CONFIDENCE, counts)
+    return {
+        "curve": _curve(values, answers),
+        "running_mean": estimators.running_mean(values, CONFIDENCE, counts),
+        "running_exceedance": running,
+        "settling": None if answers.is_plain and question.kind != "quantile" else answers.settling(),
+        "inundation_depth": float(study.quantities.inundation_depth_m),
+        "inundation": _inundation(rows, study),
+    }
 
 
 def _thinned(values: np.ndarray) -> np.ndarray:
@@ -107,49 +173,11 @@ def _thinned(values: np.ndarray) -> np.ndarray:
     return values[np.linspace(0, values.size - 1, MOST_POINTS).round().astype(int)]
 
 
-def censored_members(rows) -> np.ndarray:
-    """Return where the front met the far wall, shape (n,); nowhere if the dataset does not say."""
-    if "run_out_censored" not in rows:
-        return np.zeros(rows.sizes["realisation"], bool)
-    return np.nan_to_num(rows["run_out_censored"].values.astype(float)) > 0.0
-
-
-def status_names(rows) -> list[str]:
-    """Return the status of every row in words, read off the CF flags."""
-    attributes = rows["status"].attrs
-    names = dict(
-        zip(np.atleast_1d(attributes["flag_values"]).tolist(), attributes["flag_meanings"].split(), strict=True)
-    )
-    return [names[int(code)] for code in rows["status"].values]
-
-
-def _statuses(rows) -> dict[str, int]:
-    found = status_names(rows)
-    order = rows["status"].attrs["flag_meanings"].split()
-    return {name: found.count(name) for name in order if name in found}
-
-
-def _reasons(rows) -> list[tuple[int, str, str]]:
-    reasons = rows["status_reason"].values if "status_reason" in rows else [""] * rows.sizes["realisation"]
-    members = zip(rows["realisation"].values, status_names(rows), reasons, strict=True)
-    return [(int(index), status, str(reason)) for index, status, reason in members if status != "ok"]
-
-
 def _median_and_worst(values: np.ndarray) -> dict[str, float]:
     sizes = np.abs(values[~np.isnan(values)])
     if not sizes.size:
         return {"median": math.nan, "worst": math.nan}
     return {"median": float(np.median(sizes)), "worst": float(sizes.max())}
-
-
-def _cost(dataset) -> dict[str, float]:
-    wall = dataset["wall_time"].values
-    known = wall[~np.isnan(wall)]
-    cost = {"computing": float(known.sum()), "per_realisation": float(known.mean()) if known.size else math.nan}
-    if {"start", "end"} <= dataset.attrs.keys():
-        start, end = (datetime.fromisoformat(dataset.attrs[key]) for key in ("start", "end"))
-        cost["elapsed"] = (end - start).total_seconds()
-    return cost
 
 
 def _pictured(rows) -> list[tuple[str, int, float]]:
@@ -164,13 +192,13 @@ def _pictured(rows) -> list[tuple[str, int, float]]:
     return [(", ".join(names), int(index[at]), float(run_out[at])) for at, names in chosen.items()]
 
 
-def _curve(run_out: np.ndarray, censored: np.ndarray, limit: float) -> Band | None:
+def _curve(values: np.ndarray, answers: Answers) -> Band | None:
     """The exceedance curve at its steps, or at so many of them, from 0 to a little beyond the last and the limit."""
-    steps = np.unique(run_out[~np.isnan(run_out)])
+    steps = np.unique(values[~np.isnan(values)])
     if not steps.size:
         return None
-    start, end = min(0.0, steps[0]), 1.15 * max(steps[-1], limit, 1.0)
-    return estimators.exceedance_curve(run_out, np.unique([start, *_thinned(steps), end]), censored, CONFIDENCE)
+    start, end = min(0.0, steps[0]), 1.15 * max(steps[-1], answers.question.limit or 0.0, 1.0)
+    return answers.curve(np.unique([start, *_thinned(steps), end]))
 
 
 def _inundation(rows, study) -> Band | None:

@@ -1,15 +1,28 @@
-"""Charts of probability: exceedance curve, histograms, convergence and inundation."""
+"""Charts of probability: the answer on its exceedance curve, inundation and convergence."""
 
-from collections.abc import Iterator
+import math
 
 import numpy as np
 
 from rfmpm.estimators.curves import Band
 from rfmpm.report import words
-from rfmpm.report.numbers import CONFIDENCE, SPREAD, Numbers
-from rfmpm.report.style import BLUE, CHART, GREY, ORANGE, VERMILION, Picture, drawing, encode, new_figure
+from rfmpm.report.histograms import histograms
+from rfmpm.report.numbers import CONFIDENCE, Numbers
+from rfmpm.report.style import (
+    BLUE,
+    CHART,
+    CHART_DOTS_PER_INCH,
+    GREY,
+    ORANGE,
+    VERMILION,
+    Picture,
+    drawing,
+    encode,
+    new_figure,
+)
 
 LEVEL = f"{100 * CONFIDENCE:g} %"
+BEYOND = {"run_out": "distance beyond the toe [m]"}  # of other quantities: the quantity itself
 
 
 def charts(rows, numbers: Numbers) -> dict[str, list[Picture]]:
@@ -23,139 +36,117 @@ def charts(rows, numbers: Numbers) -> dict[str, list[Picture]]:
         Pictures by section: exceedance, spread, convergence, inundation; a section without data is empty.
     """
     with drawing():
-        completed, several = numbers.completed > 0, numbers.completed > 1
+        completed = numbers.completed > 0
+        varied, several = completed and numbers.is_random, numbers.completed > 1 and numbers.is_random
         return {
-            "exceedance": [_exceedance(numbers)] if completed else [],
-            "spread": list(_histograms(rows)),
-            "convergence": [_running_mean(numbers), _running_exceedance(numbers)] if several else [],
+            "exceedance": [_exceedance(numbers)] if varied else [],
+            "spread": list(histograms(rows)),
+            "convergence": _convergences(numbers) if several else [],
             "inundation": [_inundation(numbers)] if completed and numbers.inundation is not None else [],
         }
 
 
+def _convergences(numbers: Numbers) -> list[Picture]:
+    if numbers.settling is not None:
+        return [_settling(numbers)]
+    found = [_running_mean(numbers)]
+    return found if numbers.running_exceedance is None else [_running_exceedance(numbers), *found]
+
+
 def _exceedance(numbers: Numbers) -> Picture:
-    curve = numbers.curve
+    curve, asked = numbers.curve, numbers.asked
     figure = new_figure(*CHART)
     axes = figure.add_subplot()
-    axes.fill_between(
-        curve.at,
-        curve.simultaneous_lower,
-        curve.simultaneous_upper,
-        step="post",
-        color=BLUE,
-        alpha=0.13,
-        lw=0,
-        label=f"{LEVEL} band, whole curve",
-    )
-    axes.fill_between(
-        curve.at, curve.lower, curve.upper, step="post", color=BLUE, alpha=0.28, lw=0, label=f"{LEVEL} band, each point"
-    )
+    bands = [
+        (curve.simultaneous_lower, curve.simultaneous_upper, 0.13, f"{LEVEL} band, whole curve"),
+        (curve.lower, curve.upper, 0.28, f"{LEVEL} band, each point"),
+    ]
+    for lower, upper, alpha, label in bands:
+        if lower is not None:
+            axes.fill_between(curve.at, lower, upper, step="post", color=BLUE, alpha=alpha, lw=0, label=label)
     axes.step(curve.at, curve.value, where="post", color=BLUE, label="estimate")
-    _mark(axes, numbers.limit, f"{numbers.limit:g} m", "--")
-    axes.set(xlabel="limit l [m]", ylabel="P(run-out > l)", xlim=(curve.at[0], curve.at[-1]), ylim=(-0.02, 1.02))
+    _mark_answer(axes, numbers)
+    label = BEYOND.get(asked.quantity, f"{asked.noun} [{asked.unit}]")
+    axes.set(xlabel=label, ylabel="probability of exceeding it", xlim=(curve.at[0], curve.at[-1]), ylim=(-0.02, 1.02))
     _legend_below(figure)
     return Picture(
-        "Probability that run-out exceeds a limit",
-        encode(figure),
-        "Falling step curve of the probability that run-out exceeds a limit, with two bands. "
-        f"At {numbers.limit:g} m it is {words.share(numbers.exceedance.value)}.",
-        "Read it upwards from a distance. The dark band (Clopper-Pearson) holds the true probability at one distance "
-        f"with {LEVEL} confidence, the light band (Dvoretzky-Kiefer-Wolfowitz) at all distances at once. "
-        "The dashed line is the limit of the study.",
+        f"Probability that the {asked.noun} exceeds a value",
+        encode(figure, CHART_DOTS_PER_INCH),
+        f"Falling curve of the probability that the {asked.noun} exceeds a value, with bands. "
+        f"The answer is marked: {words.number(numbers.answer.value)}{' ' if asked.answer_unit else ''}"
+        f"{asked.answer_unit}.",
+        f"With {LEVEL} confidence the dark band holds the true probability at one value, the light band the whole "
+        "curve. Marked is the answer with its bounds.",
     )
 
 
-def _histograms(rows) -> Iterator[Picture]:
-    for name in SPREAD:
-        values = rows[name].values
-        values = values[~np.isnan(values)]
-        if values.size and np.ptp(values) > 0.0:
-            yield _histogram(values, _label(name), _unit(rows[name]), _lower_bounds(rows, name))
+def _mark_answer(axes, numbers: Numbers) -> None:
+    """The answer as a point, or a line, with the bounds of the whole error."""
+    asked, whole, value = numbers.asked, numbers.budget, numbers.answer.value
+    if math.isnan(value):
+        return
+    if asked.is_probability:
+        at, level = asked.limit, value
+        _mark(axes, at, f"{at:g} {asked.unit}", "--")
+        axes.errorbar([at], [level], [[level - whole.lower], [whole.upper - level]], **_point())
+        return
+    _mark(axes, value, words.supported(value, whole.upper - whole.lower, asked.unit), "--")
+    if math.isfinite(whole.upper - whole.lower):
+        axes.axvspan(whole.lower, whole.upper, color=VERMILION, alpha=0.15, lw=0)
+    if asked.quantile is not None:
+        axes.axhline(1.0 - asked.quantile, color=VERMILION, lw=1.0, ls=":")
 
 
-def unvarying(rows) -> list[str]:
-    """Say which quantities need no histogram, as they are the same in all completed realisations.
-
-    Args:
-        rows: the rows the estimates rest on, an xarray.Dataset.
-
-    Returns:
-        A sentence for each.
-    """
-    sentences = []
-    for name in SPREAD:
-        values = rows[name].values
-        values = values[~np.isnan(values)]
-        if values.size and np.ptp(values) == 0.0:
-            value = words.with_unit(values[0], _unit(rows[name]))
-            sentences.append(f"{_label(name).capitalize()}: {value} in {_every(values.size)}.")
-    return sentences
-
-
-def _every(n: int) -> str:
-    return "the one completed realisation" if n == 1 else f"each of {n} completed realisations"
-
-
-def _label(name: str) -> str:
-    return name.replace("_", " ").replace("run out", "run-out")
-
-
-def _lower_bounds(rows, name: str) -> int:
-    """How many values are lower bounds, because the soil met the edge of the domain."""
-    flag = f"{name.removesuffix('_distance')}_censored"
-    return int(np.nansum(rows[flag].values)) if flag in rows else 0
-
-
-def _histogram(values: np.ndarray, label: str, unit: str, bounds: int) -> Picture:
-    edges = np.histogram_bin_edges(values, bins="auto")
-    if edges.size > 41:  # a few far values make the rule ask for hundreds
-        edges = np.linspace(edges[0], edges[-1], 41)
-    figure = new_figure(*CHART)
-    axes = figure.add_subplot()
-    axes.hist(values, bins=edges, color=BLUE, edgecolor="white", linewidth=0.8)
-    _mark(axes, values.mean(), f"mean {words.number(values.mean())}", "-")
-    axes.yaxis.get_major_locator().set_params(integer=True, min_n_ticks=1)
-    axes.grid(axis="x", visible=False)
-    axes.set(xlabel=f"{label} [{unit}]", ylabel="realisations")
-    still = int(np.sum(values == 0.0))
-    censored = f" {bounds} met the edge of the domain and are lower bounds." if bounds else ""
-    return Picture(
-        label.capitalize(),
-        encode(figure),
-        f"Histogram of {label}: from {words.number(values.min())} to {words.number(values.max())} {unit}, "
-        f"mean {words.number(values.mean())} {unit}.",
-        f"{words.count(values.size, 'completed realisation')}, {still} of them exactly zero.{censored}",
-    )
+def _point() -> dict:
+    return {"fmt": "o", "color": VERMILION, "ms": 6, "capsize": 4, "lw": 1.8, "zorder": 5, "clip_on": False}
 
 
 def _running_mean(numbers: Numbers) -> Picture:
-    band = numbers.running_mean
+    band, asked = numbers.running_mean, numbers.asked
     figure, axes = _convergence(band)
     # The band of the first few realisations would dwarf all the rest: it may leave the picture.
     settled = (band.at > 0.1 * band.at[-1]) & np.isfinite(band.lower)
     shown = np.concatenate([band.value, band.lower[settled], band.upper[settled]])
     low, high = np.nanmin(shown), np.nanmax(shown)
     margin = max(0.08 * (high - low), 0.1)
-    axes.set(ylabel="mean run-out [m]", ylim=(low - margin, high + margin))
+    axes.set(ylabel=f"mean {asked.noun} [{asked.unit}]", ylim=(low - margin, high + margin))
     return Picture(
-        "Mean run-out as realisations are added",
-        encode(figure),
-        f"Line of the mean run-out against the number of realisations, ending at {words.number(band.value[-1])} "
-        "metres, with a band that narrows.",
+        f"Mean {asked.noun} as realisations are added",
+        encode(figure, CHART_DOTS_PER_INCH),
+        f"Line of the mean {asked.noun} against the number of realisations, ending at {words.number(band.value[-1])} "
+        f"{asked.unit}, with a band that narrows.",
         f"Band: {LEVEL} Student t interval; it assumes that the mean of so many values is normally distributed. "
         "The band of the first few may leave the picture.",
     )
 
 
 def _running_exceedance(numbers: Numbers) -> Picture:
-    band = numbers.running_exceedance
+    band, asked = numbers.running_exceedance, numbers.asked
     figure, axes = _convergence(band)
-    axes.set(ylabel=f"P(run-out > {numbers.limit:g} m)", ylim=(-0.02, 1.02))
+    axes.set(ylabel=f"P({asked.noun} > {asked.limit:g} {asked.unit})", ylim=(-0.02, 1.02))
     return Picture(
         "Probability as realisations are added",
-        encode(figure),
-        f"Line of the probability that run-out exceeds {numbers.limit:g} metres against the number of realisations, "
-        f"ending at {words.share(numbers.exceedance.value)}, with a band that narrows.",
+        encode(figure, CHART_DOTS_PER_INCH),
+        f"Line of the probability that the {asked.noun} exceeds {asked.limit:g} {asked.unit} against the number of "
+        f"realisations, ending at {words.share(band.value[-1])}, with a band that narrows.",
         f"Band: {LEVEL} Clopper-Pearson interval at each number of realisations, failed ones counted both ways.",
+    )
+
+
+def _settling(numbers: Numbers) -> Picture:
+    band, asked = numbers.settling, numbers.asked
+    figure, axes = _convergence(band)
+    unit = asked.answer_unit
+    axes.set(xlabel="realisations on the study's own cells", ylabel=f"answer [{unit}]" if unit else "probability")
+    if asked.is_probability:
+        axes.set_ylim(-0.02, 1.02)
+    last = words.supported(float(band.value[-1]), float(band.upper[-1] - band.lower[-1]), unit)
+    return Picture(
+        "The answer as realisations are added",
+        encode(figure, CHART_DOTS_PER_INCH),
+        f"Line of the answer against the number of realisations on the study's own cells, ending at {last}, with a "
+        "band that narrows.",
+        f"Those on coarser cells are added in the same proportion. Band: {LEVEL} interval of the estimator.",
     )
 
 
@@ -177,7 +168,7 @@ def _inundation(numbers: Numbers) -> Picture:
     axes = figure.add_subplot()
     axes.fill_between(band.at, band.lower, band.upper, color=ORANGE, alpha=0.3, lw=0, label=f"{LEVEL} band, each point")
     axes.plot(band.at, band.value, color=VERMILION, label="estimate")
-    axes.set(xlabel="distance beyond the toe [m]", ylabel="P(inundated)", ylim=(-0.02, 1.02))
+    axes.set(xlabel="distance beyond the toe [m]", ylabel="probability of soil arriving", ylim=(-0.02, 1.02))
     axes.set_xlim(0.0, band.at[-1])
     _legend_below(figure)
     half = band.at[band.value >= 0.5]
@@ -186,10 +177,10 @@ def _inundation(numbers: Numbers) -> Picture:
     )
     return Picture(
         "Probability that a place is inundated",
-        encode(figure),
+        encode(figure, CHART_DOTS_PER_INCH),
         f"Probability of inundation against distance beyond the toe, with a band. {reach}.",
         f"A place counts as inundated where at least {numbers.inundation_depth:g} m of soil lies at the end. "
-        "Band: Clopper-Pearson at each distance.",
+        f"{reach} beyond the toe. Band: Clopper-Pearson at each distance.",
     )
 
 
@@ -209,9 +200,4 @@ def _mark(axes, x: float, text: str, style: str) -> None:
 
 
 def _legend_below(figure) -> None:
-    figure.legend(loc="outside lower center", ncols=3, handlelength=1.4, columnspacing=1.4)
-
-
-def _unit(variable) -> str:
-    """Unit for an axis: 'm3 m-1' reads 'm³/m'."""
-    return {"m3 m-1": "m³/m"}.get(variable.attrs.get("units", ""), variable.attrs.get("units", ""))
+    figure.legend(loc="outside lower center", ncols=3, handlelength=1.2, columnspacing=1.0)

@@ -29,23 +29,18 @@ class Snapshot:
         return self.found == self.recorded
 
 
-def simulator(study) -> Simulate:
-    """Make the function that simulates a realisation again; nothing is prepared before its first call.
+def simulator(replay) -> Simulate:
+    """Make the function that simulates a realisation of a campaign again.
 
     Args:
-        study: the study.
+        replay: of the campaign.
 
     Returns:
         Function of the index -> x, y, plastic_strain (each of shape (n,)) and run_out (a number).
     """
-    from functools import cache
-
-    from rfmpm import realisation
-
-    prepared = cache(lambda: realisation.prepare(study))
 
     def simulate(index: int) -> dict[str, np.ndarray]:
-        outcome = realisation.simulate(prepared(), index)
+        outcome = replay.simulate(index)
         return {name: outcome.points[name] for name in KEPT} | {"run_out": outcome.quantities["run_out"]}
 
     return simulate

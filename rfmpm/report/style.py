@@ -9,8 +9,9 @@ from dataclasses import dataclass
 # Okabe and Ito's colours, told apart by colour-blind readers too.
 BLUE, ORANGE, VERMILION, GREY = "#0072B2", "#E69F00", "#D55E00", "#595959"
 STRAIN_MAP, STRENGTH_MAP = "viridis", "cividis"
-CHART = (5.4, 3.5)  # inches; about the width of a column of the page
+CHART = (4.6, 3.2)  # inches; small, so that its letters are still large on a phone
 DOTS_PER_INCH = 130
+CHART_DOTS_PER_INCH = 165
 LAYOUT_PASSES = 2  # before the one of the writing itself
 COLOURS = 256  # in a figure of the page; thousands of smooth-edged points would otherwise make it three times as large
 
@@ -71,12 +72,12 @@ def save(figure, path) -> None:
     figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
 
 
-def encode(figure) -> str:
+def encode(figure, dots_per_inch: float = DOTS_PER_INCH) -> str:
     """Turn a figure into a data URI that a page can hold."""
     from PIL import Image
 
     buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=DOTS_PER_INCH)
+    figure.savefig(buffer, format="png", dpi=dots_per_inch)
     picture = Image.open(buffer).convert("RGB").quantize(COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
     buffer = io.BytesIO()
     picture.save(buffer, format="png", optimize=True)

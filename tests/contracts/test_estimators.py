@@ -1,9 +1,9 @@
 """Every listed estimator: unbiased on problems with known answers, intervals that cover, sane at the extremes.
 
-Coverage: 500 campaigns with fixed seeds; 0.93 is asked for, and 0.97 at most where an interval does not set out to be
-conservative (probabilities do while counts are few: Clopper-Pearson for plain Monte Carlo, Wilson's allowance for the
-others). Bias: with as many cases as here a bias of 2 standard errors comes about by chance, so 3.5 are allowed (two-sided
-chance of one false alarm among 50 cases: 2 %).
+Coverage: 500 campaigns with fixed seeds; 0.93 at least, and 0.97 at most where an interval does not set out to be
+conservative (probabilities do while counts are few: Clopper-Pearson for plain Monte Carlo, Wilson's allowance for
+others). Bias: with as many cases as here a bias of 2 standard errors comes about by chance, so 3.5 are allowed
+(two-sided chance of one false alarm among 50 cases: 2 %).
 """
 
 import numpy as np
@@ -34,7 +34,8 @@ def check(name: str, question: str, n: int | None, repeats: int = REPEATS, **wid
     found = repeat(name, model, wanted, n, repeats)
     if question != "quantile":  # a quantile has a bias of the order 1 / n, well inside its interval
         assert abs(found.bias_in_standard_errors(truth)) < STANDARD_ERRORS
-    scatter = 2.0 * np.sqrt(0.05 * 0.95 / repeats)  # of a measured coverage
+    # 0.93 to 0.97 for 500 repeats: 2 standard errors of a measured coverage of 0.95
+    scatter = 2.05 * np.sqrt(0.05 * 0.95 / repeats)
     assert found.coverage(truth) >= 0.95 - scatter
     if question == "mean":
         assert found.coverage(truth) <= 0.95 + scatter
@@ -42,7 +43,8 @@ def check(name: str, question: str, n: int | None, repeats: int = REPEATS, **wid
 
 
 def test_every_entry_has_a_model_problem():
-    assert {name.split(",")[0] for name in MAKERS} == set(ESTIMATORS)
+    own_tests = {"subset_simulation"}  # rare events, chains instead of independent units
+    assert {name.split(",")[0] for name in MAKERS} == set(ESTIMATORS) - own_tests
 
 
 @pytest.mark.slow
@@ -117,12 +119,12 @@ def test_costs_less_than_plain_monte_carlo(name):
 
 def outcome_of(name: str, fine, coarse=None, question="probability", is_censored=None):
     """Estimate from given values on the levels."""
-    campaign = Model().campaign(0, n=max(len(fine), 16))
-    campaign = Campaign(campaign.components, [np.asarray(fine, float), np.asarray(fine if coarse is None else coarse)])
+    levels = [np.asarray(fine, float), np.asarray(fine if coarse is None else coarse)]
+    campaign = Campaign(NORMAL.campaign(0, n=1024).components, levels)
     numbers = (len(fine), len(campaign.levels[1]))
     censored = None if is_censored is None else np.tile(is_censored, 2)
     _, asks, _ = asked(question)
-    return MAKERS[name](asks, campaign, len(fine)).estimate(campaign.rows(numbers, censored))
+    return MAKERS[name](asks, campaign, max(len(fine), 1)).estimate(campaign.rows(numbers, censored))
 
 
 @pytest.mark.parametrize("name", MAKERS)
@@ -170,13 +172,13 @@ def test_all_censored_exceed(name):
 
 @pytest.mark.parametrize("name", MAKERS)
 def test_identical_levels(name):
-    campaign = NORMAL.campaign(5)
+    campaign = NORMAL.campaign(15)
     fine, coarse = campaign.levels[0][:64], campaign.levels[0][:512]
     found = outcome_of(name, fine, coarse, "mean")
     if name in ("multilevel", "control_variate, levels alone"):
         assert found.value == pytest.approx(coarse.mean(), rel=1e-12)  # identity
     assert found.lower < 10.0 < found.upper
-    assert 0.0 <= outcome_of(name, fine, coarse).lower
+    assert outcome_of(name, fine, coarse).lower >= 0.0
 
 
 @pytest.mark.parametrize("name", MAKERS)

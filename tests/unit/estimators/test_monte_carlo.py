@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rfmpm.estimators import MonteCarlo, contiguous_prefix, exceedance, mean, quantile
+from rfmpm.estimators import contiguous_prefix, exceedance, mean, missing, quantile
 from rfmpm.estimators.intervals import clopper_pearson
 
 REPEATS = 3000
@@ -109,8 +109,12 @@ def test_contiguous_prefix(indices, length):
     assert contiguous_prefix(indices) == length
 
 
-def test_mismatched_lengths_and_no_realisations_are_errors():
+def test_mismatched_lengths_are_errors():
     with pytest.raises(ValueError, match="censored has 2 entries, values 3"):
         exceedance([1.0, 2.0, 3.0], 1.0, censored=[True, False])
-    with pytest.raises(ValueError, match="at least 1"):
-        MonteCarlo(0)
+
+
+def test_missing_realisations_are_named_in_order():
+    assert missing([], 6) == [range(6)]
+    assert missing({4, 0, 11}, 6) == [range(1, 4), range(5, 6)]
+    assert missing(range(6), 6) == []

@@ -92,19 +92,24 @@ def test_every_kind_of_campaign_gives_a_sound_page(tmp_path, name):
     simulate, _ = campaign(tmp_path, make_study(), **CASES[name])
     path = write(tmp_path, simulate=simulate)
     assert path == tmp_path / "report.html"
-    images = {"one": 3, "one failed": 0, "all failed": 0, "no failure": 6, "all censored": 9}
+    images = {"one": 4, "one failed": 0, "all failed": 0, "no failure": 7, "all censored": 10}
     check_page(path, images[name])
 
 
 def test_page_is_self_contained_and_every_picture_is_described(ordinary):
-    check_page(ordinary / "report.html", images=10)
+    check_page(ordinary / "report.html", images=12)
 
 
 def test_page_and_json_say_the_same(ordinary):
     text = (ordinary / "report.html").read_text(encoding="utf-8")
     record = json.loads((ordinary / "report.json").read_text(encoding="utf-8"))
     assert f"The probability that the run-out exceeds 5 m is {record['exceedance']['value']:.2f}" in text
-    assert f"The mean run-out is {record['mean_run_out']['value']:.2f} m" in text
+    mean = record["mean_run_out"]
+    assert 1.0 <= mean["upper"] - mean["lower"] < 10.0  # so that its interval supports one decimal place
+    assert f"The mean run-out is {mean['value']:.1f} m" in text
+    assert record["headline"] in text.replace("\N{NO-BREAK SPACE}", " ")
+    assert record["question"] == "How likely is the soil to travel more than 5 m beyond the toe?"
+    assert sum(mode["count"] for mode in record["modes"]) == record["completed"] == 23
     assert record["reasons"] == [
         {"realisation": 5, "status": "diverged", "reason": "energy grew at step 4005"},
         {"realisation": 9, "status": "not_at_rest", "reason": "kinetic energy still 0.4 % of its peak"},

@@ -23,7 +23,10 @@ def test_estimates_are_those_of_the_estimators(study):
     numbers = analyse(ensemble, study)
     run_out = ensemble["run_out"].values
     censored = np.arange(64) == 7
-    assert numbers.exceedance == estimators.exceedance(run_out, 5.0, censored)
+    expected = estimators.exceedance(run_out, 5.0, censored)
+    assert numbers.answer == numbers.exceedance
+    for name in ("value", "lower", "upper", "n"):
+        assert getattr(numbers.exceedance, name) == getattr(expected, name)
     assert numbers.mean_run_out.value == pytest.approx(np.nanmean(run_out), rel=1e-12)  # identity
     assert (numbers.held, numbers.used, numbers.completed, numbers.censored) == (64, 64, 62, 1)
     assert numbers.statuses == {"ok": 62, "diverged": 2}

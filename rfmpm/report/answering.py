@@ -1,0 +1,109 @@
+"""Answers from the rows of a campaign, by the estimator that planned it."""
+
+from copy import copy
+from dataclasses import replace
+
+import numpy as np
+from scipy.special import ndtri
+
+from rfmpm import estimators, planning
+from rfmpm.estimators.curves import Band
+from rfmpm.estimators.discretisation import ASSUMED_ORDER, Discretisation, discretisation
+from rfmpm.estimators.question import Exceedances, Value
+from rfmpm.estimators.rows import Rows
+from rfmpm.report.members import CENSORED_BY, first_index, flagged
+
+FEWEST_PAIRS = 10  # realisations on two levels; with fewer the error of the cells is not estimated
+RESAMPLES = 200
+STEPS = 12  # at which an answer is followed as rows are added
+
+
+class Answers:
+    """Asks the estimator of a campaign."""
+
+    def __init__(self, dataset, study, confidence: float):
+        """Read the campaign.
+
+        Args:
+            dataset: the ensemble with the rows of all levels.
+            study: its Study.
+            confidence: level of all intervals [-].
+        """
+        self.dataset, self.study, self.confidence = dataset, study, confidence
+        self.question = replace(planning.question_of(study), confidence=confidence)
+        self.points = planning.point_counts(study)
+        self.rows = self.rows_of(self.question.quantity)
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether every row on the study's own cells is an independent, equally weighted sample."""
+        design = self.study.estimator
+        return design is None or (design.method == "monte_carlo" and design.sampling == "random")
+
+    def rows_of(self, quantity: str) -> Rows:
+        """What estimators see of a quantity; a part of a study counts from its own first realisation."""
+        data = self.dataset
+        value = data[quantity].values.astype(float)
+        censored = flagged(data, *CENSORED_BY[quantity]) & ~np.isnan(value)
+        index = data["realisation"].values - first_index(data)
+        return planning.as_rows(data["level"].values, index, value, censored, data["step_count"].values, self.points)
+
+    def estimate(self, rows: Rows, **changes) -> estimators.Estimate:
+        """Answer the question, or that one with some of its parts changed, from some rows."""
+        return self._asking(**changes).estimate(rows)
+
+    def _asking(self, **changes):
+        estimator = copy(planning.estimator_of(self.study))
+        estimator.question = replace(self.question, **changes)
+        return estimator
+
+    def curve(self, limits: np.ndarray) -> Band:
+        """Estimate the exceedance curve of the quantity in question."""
+        return self._asking().exceedance_curve(self.rows, limits)
+
+    def without_failures(self) -> estimators.Estimate:
+        """The answer had the failed and censored simulations come to an ordinary end."""
+        rows = self.rows
+        value = np.where(rows.is_failed & (rows.level == 0), 0.0, rows.value)
+        return self.estimate(replace(rows, value=value, is_censored=np.zeros(value.shape, bool)))
+
+    def settling(self) -> Band:
+        """Follow the answer as rows are added on all levels alike, over the number on the study's own cells."""
+        numbers = np.array(self.rows.numbers(int(self.rows.level.max(initial=0)) + 1))
+        shares = np.linspace(1.0 / STEPS, 1.0, STEPS)
+        found = [self.estimate(self.rows.first(np.ceil(share * numbers).astype(int))) for share in shares]
+        at = np.ceil(shares * numbers[0])
+        return Band(
+            at, *(np.array([getattr(e, k) for e in found]) for k in ("value", "lower", "upper")), self.confidence
+        )
+
+    def discretisation(self) -> Discretisation | None:
+        """Estimate the error of the cells from the realisations on the study's cells and on the coarser ones.
+
+        Returns:
+            Discretisation of the answer; None with fewer than FEWEST_PAIRS such realisations.
+        """
+        coarser = self.study.estimator and self.study.estimator.coarser_cells_m
+        if not coarser:
+            return None
+        asked, cells = self.question, (self.study.discretisation.cell_m, *coarser)
+        functions = Exceedances(np.array([asked.limit])) if asked.kind == "exceedance" else Value()
+        found = discretisation(self.rows, functions, cells, self.confidence)
+        if found is None or found.n < FEWEST_PAIRS:
+            return None
+        return self._of_quantile(found) if asked.kind == "quantile" else found
+
+    def _of_quantile(self, of_mean: Discretisation) -> Discretisation:
+        """The same for the quantile, from pairs on the two finest levels, resampled; first order is assumed."""
+        own, other = (self.rows.on_level(k).where(~self.rows.on_level(k).is_failed) for k in (0, 1))
+        _, mine, theirs = np.intersect1d(own.index, other.index, return_indices=True)
+        pairs, p = np.array([own.value[mine], other.value[theirs]]), self.question.probability
+        drawn = np.random.default_rng(0).integers(mine.size, size=(RESAMPLES, mine.size))
+        ratio = of_mean.cells[1] / of_mean.cells[0]
+        error = -float(np.diff(np.quantile(pairs, p, axis=1))[0]) / (ratio - 1.0)
+        scatter = float(np.diff(np.quantile(pairs[:, drawn], p, axis=2), axis=0).std(ddof=1)) / (ratio - 1.0)
+        half = float(ndtri(0.5 + self.confidence / 2.0)) * scatter
+        note = f"order {ASSUMED_ORDER:g} assumed; scatter by resampling"
+        return Discretisation(
+            error, scatter, error - half, error + half, ASSUMED_ORDER, False, of_mean.cells[:2], mine.size, note
+        )

@@ -1,0 +1,65 @@
+"""Answers from rows on several sizes of cells."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from synthetic import make_ensemble, make_study
+
+from rfmpm.report.answering import Answers
+from rfmpm.report.members import usable
+from rfmpm.report.numbers import analyse
+
+PAIRS = 40
+
+
+@pytest.fixture(scope="module")
+def study():
+    until = {"quantity": "run_out", "at_most": PAIRS}
+    levels = {"method": "multilevel", "coarser_cells_m": [0.5]}
+    return make_study(**{"study.realisations": None, "study.until": until, "estimator": levels})
+
+
+@pytest.fixture(scope="module")
+def ensemble(study):
+    """Realisations on the study's cells, and three times as many on coarser ones, which go 1 m or so less far."""
+    fine = make_ensemble(study, n=PAIRS)
+    coarse = make_ensemble(study, n=3 * PAIRS).assign_coords(level=("realisation", np.ones(3 * PAIRS, int)))
+    coarse["run_out"] = coarse["run_out"] - 1.0 + 0.1 * np.resize([-1.0, 1.0], 3 * PAIRS)
+    return xr.concat([fine, coarse], "realisation", data_vars="minimal", coords="minimal", combine_attrs="override")
+
+
+def test_error_of_the_cells_from_pairs(study, ensemble):
+    found = Answers(ensemble, study, 0.95).discretisation()
+    assert (found.cells, found.n) == ((0.25, 0.5), PAIRS)
+    assert found.error == pytest.approx(
+        1.0, rel=1e-9
+    )  # identity: gaps alternate about 1; the ratio of sides less 1 is 1
+    error = 0.1 / np.sqrt(PAIRS - 1.0)  # of gaps of +-0.1: standard deviation 0.1 sqrt(n / (n - 1)) over sqrt(n)
+    assert found.standard_error == pytest.approx(error, rel=1e-9)
+
+
+def test_error_of_the_cells_of_a_quantile_is_that_of_the_shift(study, ensemble):
+    until = {"quantity": "run_out", "quantile": 0.5, "at_most": PAIRS}
+    found = Answers(ensemble, study.with_changes({"study.until": until}), 0.95).discretisation()
+    assert abs(found.error - 1.0) <= 0.1  # the coarser values are 1 m less far, 0.1 m more or less
+    assert found.lower < found.error < found.upper
+
+
+def test_the_page_shows_rows_on_the_study_s_own_cells_and_the_answer_uses_all(study, ensemble):
+    numbers = analyse(ensemble, study)
+    assert (numbers.held, numbers.used, numbers.completed) == (PAIRS, PAIRS, PAIRS)
+    assert usable(ensemble, study)["level"].values.max() == 0
+    assert numbers.answer.n == PAIRS
+    own = usable(ensemble, study)["run_out"].values
+    plain = np.std(own, ddof=1) / np.sqrt(PAIRS)
+    assert numbers.answer.standard_error < plain  # the coarser ones vary alike and are three times as many
+    assert numbers.budget.lower == pytest.approx(numbers.answer.lower - numbers.discretisation.upper, rel=1e-12)
+    assert numbers.settling.value[-1] == numbers.answer.value
+    assert numbers.cost["coarser"] == pytest.approx(ensemble["wall_time"].values[PAIRS:].sum(), rel=1e-12)  # identity
+
+
+def test_a_part_of_a_study_is_answered_from_its_own_first_realisation():
+    study = make_study()
+    part = make_ensemble(study, n=20)
+    part = part.assign_coords(realisation=part["realisation"] + 32).assign_attrs(first_realisation=32)
+    assert analyse(part, study).answer.value == analyse(make_ensemble(study, n=20), study).answer.value
