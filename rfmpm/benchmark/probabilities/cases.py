@@ -10,8 +10,15 @@ NUMBERS = {"fine": 2000, "coarse": 20_000, "latin_hypercube": 6400, "sobol": 640
 REPLICATE, COMPONENTS = 32, 32  # of the designs: points of a replicate, principal components that are fixed
 
 
-def studies() -> dict[str, Study]:
-    """Make the studies by name: the fields of one index are those of one reference lattice on both cell sizes."""
+def studies(numbers: dict[str, int]) -> dict[str, Study]:
+    """Make the studies: the fields of one index are those of one reference lattice on both cell sizes.
+
+    Args:
+        numbers: realisations of each.
+
+    Returns:
+        Studies by name.
+    """
     base = load_study(CONFIG).with_changes(
         {
             "random_field.cohesion.reference_cell_m": FINE,
@@ -25,6 +32,6 @@ def studies() -> dict[str, Study]:
         name: {"estimator": {"sampling": name, **design}} for name in ("latin_hypercube", "sobol")
     }
     return {
-        name: (base if name == "fine" else coarse).with_changes({"study.realisations": NUMBERS[name], **table})
+        name: (base if name == "fine" else coarse).with_changes({"study.realisations": numbers[name], **table})
         for name, table in tables.items()
     }

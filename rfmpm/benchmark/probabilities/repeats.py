@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -22,17 +23,22 @@ class Bank:
         work: per level, time steps times points of each, shape (n_level,).
         cost: per level, processor time of one realisation over that of one on level 0 [-].
         features: of all realisations, shape (n, d).
+        block: realisations that stay together, the points of a replicate of a design; 1: independent ones.
     """
 
     value: Sequence[np.ndarray]
     work: Sequence[np.ndarray]
     cost: Sequence[float]
     features: np.ndarray
+    block: int = 1
 
     def order(self, generator: np.random.Generator) -> np.ndarray:
         """Draw an order of all realisations in which those that level 0 holds come first, each part at random."""
         edges = [0, *sorted({len(y) for y in self.value})]
-        pieces = [generator.permutation(np.arange(a, b)) for a, b in zip(edges, edges[1:], strict=False)]
+        pieces = [
+            generator.permutation(np.arange(first, stop).reshape(-1, self.block)).ravel()
+            for first, stop in pairwise(edges)
+        ]
         return np.concatenate(pieces)
 
 
