@@ -41,8 +41,7 @@ def banks(studies: dict[str, Study], columns: dict[str, Column]) -> dict[str, Ba
     Returns:
         Banks by name.
     """
-    table = {"method": "control_variate", "coarser_cells_m": [COARSE], "principal_components": COMPONENTS}
-    features = FieldFeatures(studies["fine"].with_changes({"estimator": table}))
+    features = FieldFeatures(_asking(studies["fine"]))
     scores = features(range(len(columns["coarse"].run_out)))
     points = planning.point_counts(studies["fine"])[0], planning.point_counts(studies["coarse"])[0]
     both = [columns["fine"], columns["coarse"]]
@@ -55,6 +54,19 @@ def banks(studies: dict[str, Study], columns: dict[str, Column]) -> dict[str, Ba
         column = columns[name]
         found[name] = Bank([column.run_out], [column.steps * points[1]], (1.0,), none, REPLICATE)
     return found
+
+
+def _asking(study: Study) -> Study:
+    """The study with the question and the estimator whose features the banks hold."""
+    until = {"quantity": "run_out", "half_width_m": 0.1, "at_most": study.study.realisations}
+    return study.with_changes(
+        {
+            "study": {"name": study.study.name, "seed": study.study.seed, "until": until},
+            "estimator.method": "control_variate",
+            "estimator.coarser_cells_m": [COARSE],
+            "estimator.principal_components": COMPONENTS,
+        }
+    )
 
 
 def cost_ratio(studies: dict[str, Study]) -> float:
