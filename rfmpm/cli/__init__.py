@@ -103,10 +103,7 @@ def simulate(
     frames = frames or (FRAMES_OF_AN_ANIMATION if animate else 0)
     replay = planning.Replay(settings)
     prepared = replay.prepared
-    if xi is not None:
-        vector = _read_xi(xi, prepared)
-    else:
-        vector = None if homogeneous else replay.options(index).get("xi")
+    vector = None if homogeneous else _read_xi(xi, prepared) if xi is not None else replay.options(index).get("xi")
     threads = realisation.threads_for(prepared) if threads is None else threads
     outcome = realisation.simulate(prepared, index, frames=frames, homogeneous=homogeneous, xi=vector, threads=threads)
     written = [folder / "simulation.nc", folder / "simulation.png"]

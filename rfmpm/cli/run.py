@@ -102,7 +102,8 @@ def run(
             typer.echo(line)
     typer.echo(f"report:  {reporting.write(folder)}")
     if not planning.has_chains(settings):  # their realisations are no fair sample of the slope
-        for line in reporting.summary_lines(planning.on_own_cells(dataset), settings):
+        own = dataset if settings.estimator is None else planning.on_own_cells(dataset)
+        for line in reporting.summary_lines(own, settings):
             typer.echo(line)
     allowed = settings.failures.max_failed_fraction if allow_failed is None else allow_failed
     end_if_too_many_failed(failures(dataset), dataset.sizes["realisation"], allowed)

@@ -7,12 +7,14 @@ from rfmpm.estimators.plain import MonteCarlo
 from rfmpm.estimators.question import Exceedances, Given, Question, Value
 from rfmpm.estimators.replicated import Replicated
 from rfmpm.estimators.rows import Rows
+from rfmpm.estimators.subset_simulation import SubsetSimulation
 
 ESTIMATORS = {
     "monte_carlo": MonteCarlo,
     "replicated": Replicated,
     "multilevel": Multilevel,
     "control_variate": ControlVariate,
+    "subset_simulation": SubsetSimulation,
 }
 
 __all__ = [
@@ -27,6 +29,7 @@ __all__ = [
     "Question",
     "Replicated",
     "Rows",
+    "SubsetSimulation",
     "Value",
     "contiguous_prefix",
     "exceedance",

@@ -188,36 +188,3 @@ def missing(done: Collection[int], realisations: int) -> list[range]:
     edges = np.concatenate([[-1], present, [realisations]])
     before = np.flatnonzero(np.diff(edges) > 1)
     return [range(int(edges[i]) + 1, int(edges[i + 1])) for i in before]
-
-
-class MonteCarlo:
-    """Plan and estimate of a plain Monte Carlo campaign with a fixed number of realisations."""
-
-    def __init__(self, realisations: int):
-        """Set the number of realisations.
-
-        Args:
-            realisations: at least 1 [-].
-
-        Raises:
-            ValueError: if it is less than 1.
-        """
-        if realisations < 1:
-            raise ValueError(f"realisations = {realisations}: at least 1 is needed")
-        self.realisations = realisations
-
-    def plan(self, done: Collection[int]) -> list[range]:
-        """Name the realisations that are still to be run.
-
-        Args:
-            done: indices that have a row already, in any order.
-
-        Returns:
-            The missing indices of 0 to realisations - 1, in ascending order, as ranges.
-        """
-        return missing(done, self.realisations)
-
-    def estimate(self, values, limit: float, censored=None, confidence: float = 0.95) -> Estimate:
-        """Estimate P(X > limit) from the first `realisations` values; arguments and result as in `exceedance`."""
-        first = slice(self.realisations)
-        return exceedance(values[first], limit, None if censored is None else censored[first], confidence)

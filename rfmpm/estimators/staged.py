@@ -20,6 +20,12 @@ class Staged(LinearEstimator):
 
     Stages depend on the rows, not on when they came in, and each ends before the next is planned: no run counts because
     it was quick, and a campaign that is continued passes through the same stages again.
+
+    Numbers that follow from a measured variance bias the estimate a little towards values whose variance is small. With
+    independent units of variance s2 and third central moment m3 the bias is about -m3 / (s2 n), whatever the stages:
+    for a probability p it is -(1 - 2 p) / n, a seventh of its standard error at p = 0.15 and n = 230.
+
+    Source of the bias: Whitehead (1986), Biometrika 73, 573-581.
     """
 
     def __init__(self, question: Question, realisations: int | None = None):

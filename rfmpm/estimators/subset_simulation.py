@@ -1,8 +1,9 @@
 """Subset simulation: a small probability as a product of larger ones, each from runs that start above a threshold.
 
 The first level is plain. The best of its runs are the seeds of chains that stay above what they exceed, and so on until
-the limit is a level. A conditional probability comes from states that are not independent; its variance is that between
-the chains of its level.
+the limit is a level. The states of a level are not independent: the variance of its conditional probability is that
+between its chains. Levels depend on each other too, which several subset simulations side by side show: the interval is
+lognormal, from the larger of the variance within them, summed over levels, and that between them.
 """
 
 import math
@@ -93,7 +94,16 @@ class SubsetSimulation:
         return [Runs(0, range(int(part[0]), int(part[-1]) + 1)) for part in parts if part.size]
 
     def estimate(self, rows: Rows) -> Estimate:
-        """Estimate the probability of exceeding the limit; the interval is described in the module's report."""
+        """Estimate the probability of exceeding the limit from the complete levels.
+
+        Where the first level answers, its runs are plain and the interval is Clopper and Pearson's.
+
+        Args:
+            rows: all that is finished.
+
+        Returns:
+            Estimate [-]; failed runs enter the upper bound, and censored ones count as exceeding.
+        """
         course = self.course(rows)
         return self._estimate(rows, course, self.question.limit)
 

@@ -104,9 +104,6 @@ class Repeats:
     standard_error: np.ndarray
     work: np.ndarray
 
-    def bias_in_standard_errors(self, truth: float) -> float:
-        return float((self.value.mean() - truth) / (self.value.std(ddof=1) / np.sqrt(self.value.size)))
-
     def coverage(self, truth: float) -> float:
         return float(np.mean((self.lower <= truth) & (truth <= self.upper)))
 

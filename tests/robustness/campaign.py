@@ -1,8 +1,8 @@
 """Runs the coarse campaign as a program of its own, so that tests can kill it or start it under mpirun.
 
 python campaign.py DIR REALISATIONS [WORKERS] [SECONDS each realisation is held up] [WALL TIME in seconds]
-With PLAN in the environment, the study is changed as plans.json says under that name; REALISATIONS is "". With TALLY in the environment, every realisation that begins is a line of that file; with SEGMENT_SECONDS, segments are
-written that often.
+With PLAN in the environment, the study is changed as plans.json says under that name; REALISATIONS is "".
+With TALLY, every realisation that begins is a line of that file; with SEGMENT_SECONDS, segments are written that often.
 Prints the hash of the content on rank 0; exit codes as those of `rfmpm run`.
 """
 

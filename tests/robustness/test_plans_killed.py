@@ -9,7 +9,6 @@ from test_kill_and_resume import CAMPAIGN, LONGEST, start, wait_for_segment
 
 from rfmpm import results
 
-
 PLANS = json.loads(CAMPAIGN.with_name("plans.json").read_text())
 
 

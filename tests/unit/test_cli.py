@@ -422,7 +422,7 @@ def test_xi_of_a_file_gives_the_realisation_it_was_written_of(tmp_path):
 def test_xi_without_a_field_is_refused(simulation, tmp_path, arguments):
     result = call("simulate", *arguments, "--xi", tmp_path / "xi.npy", "--out", tmp_path)
     assert result.exit_code == 2
-    assert "--xi: there is no random field" in result.stderr
+    assert "--xi: there is nothing random" in result.stderr
 
 
 # --- the other commands

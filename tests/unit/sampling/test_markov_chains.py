@@ -65,6 +65,11 @@ def test_a_step_keeps_the_distribution_and_states_stay_above_their_level(finishe
     for run in course.runs:
         for level in run.levels[1:]:
             assert level.values.min() > level.above
+    for index in (100, 150, len(vectors) - 1):
+        width, parent = course.width[index], course.parent[index]
+        step = vectors[index] - np.sqrt(1.0 - width**2) * vectors[parent]
+        plain = seeds.standard_normal(SEED, 0, index, VARIABLES)
+        np.testing.assert_allclose(step, width * plain, rtol=0, atol=1e-12)  # identity
     # Candidates before any is judged: sums of squares of independent standard-normal numbers are near their number;
     # statistical tolerance: 5 standard errors, of some hundred of them
     squares = np.sum(vectors**2, axis=1)
