@@ -22,6 +22,9 @@ class Multilevel(Staged):
 
     Indices are nested: those of a level are also simulated on each coarser level that is used. A pilot runs on all
     levels; the levels that pay are kept, and the numbers follow from the variances and the work measured so far.
+
+    Given the numbers the estimate is unbiased. That they follow from the same rows costs a bias of the order 1 / n: at
+    128 realisations a tenth of the standard error for a probability of 0.15, none that is seen for a mean.
     """
 
     method = "multilevel Monte Carlo"

@@ -40,6 +40,11 @@ class Answers:
         design = self.study.estimator
         return design is None or (design.method == "monte_carlo" and design.sampling == "random")
 
+    @property
+    def has_chains(self) -> bool:
+        """Whether realisations follow from others, so that the first ones alone are a fair sample."""
+        return planning.has_chains(self.study)
+
     def rows_of(self, quantity: str) -> Rows:
         """What estimators see of a quantity; a part of a study counts from its own first realisation."""
         data = self.dataset
@@ -53,6 +58,9 @@ class Answers:
         return self._asking(**changes).estimate(rows)
 
     def _asking(self, **changes):
+        if changes and self.has_chains:  # which answer their own question alone
+            plain = replace(self.question, half_width=None, relative_half_width=None, **changes)
+            return estimators.MonteCarlo(plain, self.study.estimator.level_size)
         estimator = copy(planning.estimator_of(self.study))
         estimator.question = replace(self.question, **changes)
         return estimator
@@ -64,6 +72,8 @@ class Answers:
     def without_failures(self) -> estimators.Estimate:
         """The answer had the failed and censored simulations come to an ordinary end."""
         rows = self.rows
+        if self.has_chains:  # what followed from a failed one would have been another
+            return self.estimate(rows)
         value = np.where(rows.is_failed & (rows.level == 0), 0.0, rows.value)
         return self.estimate(replace(rows, value=value, is_censored=np.zeros(value.shape, bool)))
 
@@ -100,7 +110,7 @@ class Answers:
         pairs, p = np.array([own.value[mine], other.value[theirs]]), self.question.probability
         drawn = np.random.default_rng(0).integers(mine.size, size=(RESAMPLES, mine.size))
         ratio = of_mean.cells[1] / of_mean.cells[0]
-        error = -float(np.diff(np.quantile(pairs, p, axis=1))[0]) / (ratio - 1.0)
+        error = float(np.diff(np.quantile(pairs, p, axis=1))[0]) / (ratio - 1.0)
         scatter = float(np.diff(np.quantile(pairs[:, drawn], p, axis=2), axis=0).std(ddof=1)) / (ratio - 1.0)
         half = float(ndtri(0.5 + self.confidence / 2.0)) * scatter
         note = f"order {ASSUMED_ORDER:g} assumed; scatter by resampling"

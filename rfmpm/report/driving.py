@@ -19,7 +19,8 @@ MOST_FIELDS = 500  # that are made again; a correlation then has a noise of 0.05
 class Drivers:
     """Pictures of what drives the quantity, and their numbers by name."""
 
-    pictures: list[Picture] = field(default_factory=list)
+    charts: list[Picture] = field(default_factory=list)
+    maps: list[Picture] = field(default_factory=list)
     numbers: dict[str, Any] = field(default_factory=dict)
 
 
@@ -53,14 +54,14 @@ def _of_numbers(found: Drivers, dataset, study, answers: Answers, noun: str) -> 
         labels = group_labels(keys, has_fields)
         indices = sobol_indices(arrange(answers.rows, len(labels)), answers.confidence)
         if np.isfinite(indices.total).any():
-            found.pictures.append(sobol_chart(labels, indices, noun))
+            found.charts.append(sobol_chart(labels, indices, noun))
             found.numbers["sobol_indices"] = {"groups": labels, "indices": indices}
     elif answers.is_plain:
         rows = usable(dataset, study)
         labels, own = group_labels(keys, False), answers.rows.first([rows.sizes["realisation"]])
         indices = given_data_indices(rows["uncertain_value"].values, own, confidence=answers.confidence)
         if np.isfinite(indices.first).any():
-            found.pictures.append(given_data_chart(labels, indices, noun))
+            found.charts.append(given_data_chart(labels, indices, noun))
             found.numbers["first_order_indices"] = {"numbers": labels, "indices": indices}
 
 
@@ -87,5 +88,5 @@ def _of_fields(found: Drivers, dataset, study, quantity: str, replay: "planning.
     places = np.column_stack([at.x, at.y])
     for name, influence in field_influence(prepared, index, values, vector, MOST_FIELDS).items():
         label = name.replace("_", " ")
-        found.pictures.append(influence_map(places, influence, outline(study), label, NOUNS[quantity]))
+        found.maps.append(influence_map(places, influence, outline(study), label, NOUNS[quantity]))
         found.numbers[f"influence_of_{name}"] = influence

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, is_dataclass
 
 import numpy as np
 
-from rfmpm import estimators
+from rfmpm import estimators, planning
 from rfmpm.estimators.curves import Band
 from rfmpm.estimators.discretisation import Discretisation
 from rfmpm.estimators.intervals import clopper_pearson
@@ -21,6 +21,7 @@ from rfmpm.report.safety import Safety, safety
 CONFIDENCE = 0.95
 QUALITY = ("plastic_work_share", "friction_work_share", "numerical_dissipation_share", "energy_balance_error")
 MOST_POINTS = 2000  # of a curve; more would be seen in no picture and make report.json large
+FEWER_POINTS = 200  # of a curve that takes an estimator's whole work at each
 BLOCK = 2**16  # rows whose surfaces are looked at together
 PICTURED = (("median", 0.5), ("95th percentile", 0.95), ("worst", 1.0))
 MOST_PICTURED = len(PICTURED) + len(MODES)  # a typical member of each kind of failure, too
@@ -36,6 +37,7 @@ class Numbers:
     discretisation: Discretisation | None
     next_steps: list[str]
     is_random: bool  # whether realisations differ
+    has_chains: bool  # whether most realisations were sought near the limit, the first ones alone being a fair sample
     is_plain: bool  # whether they are independent and all on the study's own cells
     coarser: int  # rows on coarser cells
     held: int  # rows in the dataset, on the study's own cells
@@ -78,7 +80,7 @@ def analyse(dataset, study) -> Numbers:
     """
     rows, answers = usable(dataset, study), Answers(dataset, study, CONFIDENCE)
     return Numbers(
-        **_answer(rows, study, answers),
+        **_answer(planning.on_own_cells(dataset) if answers.has_chains else rows, study, answers),
         **_of_run_out(rows, study, answers),
         **_curves(rows, study, answers),
         coarser=int(np.sum(dataset["level"].values > 0)),
@@ -120,6 +122,7 @@ def _answer(rows, study, answers: Answers) -> dict:
         "discretisation": cells,
         "next_steps": next_steps(standing, study),
         "is_random": standing.is_random,
+        "has_chains": answers.has_chains,
         "is_plain": answers.is_plain,
         "at_back": standing.at_back,
     }
@@ -166,11 +169,12 @@ def _curves(rows, study, answers: Answers) -> dict:
     }
 
 
-def _thinned(values: np.ndarray) -> np.ndarray:
-    """At most MOST_POINTS of the values, evenly spread over their order, the first and the last among them."""
-    if values.size <= MOST_POINTS:
+def _thinned(values: np.ndarray, most: int | None = None) -> np.ndarray:
+    """At most so many of the values, evenly spread over their order, the first and the last among them."""
+    most = MOST_POINTS if most is None else most
+    if values.size <= most:
         return values
-    return values[np.linspace(0, values.size - 1, MOST_POINTS).round().astype(int)]
+    return values[np.linspace(0, values.size - 1, most).round().astype(int)]
 
 
 def _median_and_worst(values: np.ndarray) -> dict[str, float]:
@@ -198,7 +202,7 @@ def _curve(values: np.ndarray, answers: Answers) -> Band | None:
     if not steps.size:
         return None
     start, end = min(0.0, steps[0]), 1.15 * max(steps[-1], answers.question.limit or 0.0, 1.0)
-    return answers.curve(np.unique([start, *_thinned(steps), end]))
+    return answers.curve(np.unique([start, *_thinned(steps, None if answers.is_plain else FEWER_POINTS), end]))
 
 
 def _inundation(rows, study) -> Band | None:

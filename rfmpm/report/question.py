@@ -28,7 +28,8 @@ def setting(study) -> str:
     """
     varied = ", ".join(name.replace("_", " ") for name in study.random_field)
     soil = f"whose {varied} varies from place to place" if varied else "of the same strength everywhere"
-    return f"{_body(study)} {soil}."
+    doubt = " Some of its numbers are uncertain." if study.uncertain else ""
+    return f"{_body(study)} {soil}.{doubt}"
 
 
 def background(study) -> str:

@@ -63,9 +63,20 @@ def precision(numbers: Numbers) -> list[str]:
     return found
 
 
+def sample(numbers: Numbers) -> str:
+    """Say of which realisations kinds of failure, pictures and histograms are, where not of all."""
+    if not numbers.has_chains:
+        return ""
+    shown = sum(numbers.statuses.values())
+    return (
+        f"From here on the page shows the first {shown} simulated slopes, a fair sample; the others were sought near "
+        "the limit and count in the answer alone."
+    )
+
+
 def mode_cards(numbers: Numbers, pictures: dict) -> list[dict]:
     """Kinds of failure: name, share with its interval, meaning, thumbnail of a typical member (None: no member)."""
-    total = numbers.completed
+    total = sum(mode.count for mode in numbers.modes)
     return [
         {
             "name": kinds.NAMES[mode.name],

@@ -94,7 +94,8 @@ def test_the_store_gives_the_same_bits_and_heals(site, tmp_path, monkeypatch):
         patch.setattr(components, "_components", None)  # making them again would raise
         found = principal_components(fields, 5, tmp_path / "new")
     assert fresh.directions.tobytes() == made.directions.tobytes() == found.directions.tobytes()
-    other = principal_components(prepared(site, {"random_field.cohesion.scale_of_fluctuation_h_m": 3.0}), 5, tmp_path)
+    unlike = prepared(site, {"random_field.cohesion.scale_of_fluctuation_h_m": 3.0})
+    other = principal_components(unlike, 5, tmp_path / "new")
     assert other.directions.tobytes() != fresh.directions.tobytes()
     for path in (tmp_path / "new").glob("*.directions.npy"):
         path.write_bytes(path.read_bytes()[:-80])

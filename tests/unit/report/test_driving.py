@@ -23,7 +23,7 @@ def test_first_order_indices_tell_the_number_that_matters():
     ensemble["run_out"][:] = 10.0 * numbers[:, 1] + 1.0
     found = drivers(ensemble, study, Answers(ensemble, study, 0.95), None)
     indices = found.numbers["first_order_indices"]["indices"]
-    assert len(found.pictures) == 1
+    assert len(found.charts) == 1
     # 10 classes of 20 rows: within a class a tenth of the range varies, a hundredth of the variance.
     assert indices.first[1] > 0.95
     assert indices.first[0] < indices.noise[0]
@@ -33,5 +33,5 @@ def test_nothing_is_said_where_nothing_can_be():
     study = make_study()
     ensemble = make_ensemble(study, n=8)
     found = drivers(ensemble, study, Answers(ensemble, study, 0.95), None)
-    assert found.pictures == []
+    assert found.charts + found.maps == []
     assert found.numbers == {}
