@@ -55,8 +55,7 @@ def allocate(nested: Nested, work: Sequence[float], levels: Sequence[int]) -> Al
     share = np.sqrt(np.maximum(variance, 1e-6 * max(total[-1], 1e-300)) / cost)
     # Whole powers of 2: numbers that followed the variances closely would be larger where the values so far are by
     # chance, and such a dilution of some outcomes only is a bias. The variance is a few per cent above the least.
-    # Downwards, as a variance of differences that are small but for a few comes out too small more often than not.
-    powers = np.floor(np.log2(np.clip(share / share[0], 1.0, LARGEST_RATIO)))
+    powers = np.round(np.log2(np.clip(share / share[0], 1.0, LARGEST_RATIO)))
     ratio = np.maximum.accumulate(2.0**powers)
     return Allocation(tuple(levels), ratio, np.maximum(variance, 0.0))
 

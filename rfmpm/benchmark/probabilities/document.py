@@ -13,7 +13,7 @@ from rfmpm.benchmark.probabilities.repeats import Bank, Judged, judge, repeats
 from rfmpm.benchmark.probabilities.slope import QUESTIONS, Reference, makers
 from rfmpm.benchmark.probabilities.text import TEXT
 
-SIZES = (32, 64, 128, 192)  # realisations on 0.25 m cells
+SIZES = (32, 64, 128)  # realisations on 0.25 m cells
 COVERED = 128  # of them for the table of coverage
 COARSE_SIZE = 256
 REPEATS = 500
