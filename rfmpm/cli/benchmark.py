@@ -90,3 +90,11 @@ def scheduling() -> Write:
     from rfmpm.benchmark.scheduling.document import run
 
     return run
+
+
+@command
+def probabilities() -> Write:
+    """Error over cost, bias and coverage of every estimator on the short slope: probabilities.md and its picture."""
+    from rfmpm.benchmark.probabilities.document import run
+
+    return run

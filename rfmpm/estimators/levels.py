@@ -25,6 +25,7 @@ from rfmpm.estimators.regression import Fit, fit
 
 FOLDS = 8
 LARGEST_SLOPE = 1.5  # on a step, whose slope is near 1; more comes of a step that hardly varies among the known rows
+MULTIPLIED = 8  # leading components whose products are features; measured: on the short slope more explain no more
 FEWEST_TO_FIT = 12  # completed indices on level 0; with fewer no coefficient is fitted
 
 
@@ -109,8 +110,9 @@ def terms(nested: Nested) -> Terms:
 
 
 def _features(normals: np.ndarray) -> np.ndarray:
-    """Functions of standard normals with mean 0 and variance 1."""
-    return np.hstack([normals, (normals**2 - 1.0) / np.sqrt(2.0)])
+    """Functions of standard normals with mean 0 and variance 1: themselves, their squares, products of the first."""
+    first, second = np.triu_indices(min(MULTIPLIED, normals.shape[1]), 1)
+    return np.hstack([normals, (normals**2 - 1.0) / np.sqrt(2.0), normals[:, first] * normals[:, second]])
 
 
 def _stand_in(nested: Nested, level: int, y, prediction, known, others, can_fit: bool):

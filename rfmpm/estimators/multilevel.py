@@ -58,42 +58,37 @@ class Multilevel(Staged):
         return [int(min(self.pilot, self.most))] * (self.coarser_levels + 1)
 
     def next_numbers(self, rows: Rows, numbers: list[int]) -> list[int] | None:
-        """Return the numbers after the next stage; None when the question is answered or the most are done."""
-        nested, work = self._shared_by(rows), self._work(rows)
+        """Return the numbers after the next stage; None when the question is answered or the most are done.
+
+        Stages alternate: the coarser levels catch up with what the variances of all indices on level 0 ask of them,
+        then level 0 grows. Numbers from the pilot alone would often be far too large: differences of levels are small
+        but for a few, which a pilot may not have met.
+        """
+        if self.realisations is None and not self.growth(rows, numbers[0]):
+            return None
         nested_so_far = [level for level, number in enumerate(numbers) if number >= numbers[0]]
-        shared = choose_levels(nested, work, nested_so_far)
-        if self.realisations is not None:
-            return self._fixed(numbers, shared)
-        return self._towards_width(rows, numbers, shared)
+        shared = choose_levels(self._shared_by(rows), self._work(rows), nested_so_far)
+        balanced = self._balanced(numbers, shared)
+        if balanced != numbers:
+            return balanced
+        return self._grown(rows, numbers, shared) if numbers[0] < self.most else None
 
-    def _fixed(self, numbers: list[int], shared: Allocation) -> list[int] | None:
-        if numbers[0] >= self.realisations and len(shared.levels) > 1 and self._is_shared(numbers, shared):
-            return None
-        own = min(self.realisations, 4 * numbers[0])
-        following = self._numbers(numbers, shared, own)
-        return following if following != numbers else None
-
-    def _is_shared(self, numbers: list[int], shared: Allocation) -> bool:
-        return all(numbers[level] >= numbers[0] + 2 for level in shared.levels[1:])
-
-    def _towards_width(self, rows: Rows, numbers: list[int], shared: Allocation) -> list[int] | None:
-        now = np.maximum.accumulate([numbers[level] for level in shared.levels])
-        variance = shared.variance_with(now)
-        gain = shared.variance_with(numbers[0] * shared.ratio) / variance if variance > 0.0 else 1.0
-        wanted = self.growth(rows, numbers[0], gain)
-        if not wanted or numbers[0] >= self.most:
-            return None
-        following = self._numbers(numbers, shared, wanted)
-        if following == numbers:
-            following = self._numbers(numbers, shared, LEAST_GROWTH * numbers[0])
+    def _balanced(self, numbers: list[int], shared: Allocation) -> list[int]:
+        """Numbers with so many on the coarser levels as suit those on level 0, none less than before."""
+        following = list(numbers)
+        for level, ratio in zip(shared.levels[1:], shared.ratio[1:], strict=True):
+            following[level] = max(numbers[level], _whole(ratio * numbers[0]))
         return following
 
-    def _numbers(self, numbers: list[int], shared: Allocation, own: float) -> list[int]:
-        """Numbers on all levels with so many on level 0, in whole folds, none less than before."""
+    def _grown(self, rows: Rows, numbers: list[int], shared: Allocation) -> list[int]:
+        """Numbers with more on level 0, in whole folds, and at least as many on the coarser levels that are used."""
+        own = 4 * numbers[0]
+        if self.realisations is None:
+            own = max(self.growth(rows, numbers[0]), LEAST_GROWTH * numbers[0])
         following = list(numbers)
-        following[0] = int(min(max(numbers[0], _whole(own)), self.most))
-        for level, ratio in zip(shared.levels[1:], shared.ratio[1:], strict=True):
-            following[level] = max(numbers[level], _whole(ratio * own))
+        following[0] = int(min(_whole(own), self.most))
+        for level in shared.levels[1:]:
+            following[level] = max(numbers[level], following[0])
         return following
 
     def _work(self, rows: Rows) -> list[float]:

@@ -1,0 +1,1 @@
+"""Estimators against their reference: bias, coverage of the intervals, and error over cost."""

@@ -1,0 +1,42 @@
+"""The words of probabilities.md."""
+
+TEXT = """\
+# What a probability costs: estimators against a reference
+
+Made by `rfmpm benchmark probabilities`. The slope is that of `configs/short_slope_random.toml` with its fields on a
+lattice of 0.25 m cells. Its rows are kept in `probabilities_rows.nc`: {rows}. A realisation on cells of 0.5 m takes
+{ratio:.3f} of the processor time of one on 0.25 m (measured in turns here); all costs below are in realisations on
+0.25 m cells. Estimators draw realisations from these rows, without putting them back, {repeats} times each.
+
+![Root-mean-square error over cost](probabilities.png)
+
+## Error over cost, cells of 0.25 m
+
+Gain: cost of plain Monte Carlo over that of the estimator at equal root-mean-square error. Reference: control variates
+on all rows. Draws share rows, and the reference has an error of its own (in the table), which makes the largest gains
+uncertain by some percent.
+
+{gains}
+
+## Bias and coverage, cells of 0.25 m
+
+Bias in standard errors, the reference's own error included; coverage of the 95 % intervals, of which 0.93 to 0.97 is
+what is asked; realisations on 0.25 m cells.
+
+{coverage}
+
+## Bias and coverage, cells of 0.5 m
+
+Reference: {coarse_rows} independent realisations. Designs are drawn in whole replicates of {replicate} points that fix
+{components} principal components. Variance ratio: of plain Monte Carlo with as many realisations over the estimator's.
+
+{coarse}
+
+## A small probability
+
+{small}
+
+{subsets}
+
+Plain Monte Carlo needs {plain} realisations for a relative error of 30 % of such a probability.
+"""
