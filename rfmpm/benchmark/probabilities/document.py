@@ -18,6 +18,7 @@ COVERED = 128  # of them for the table of coverage
 COARSE_SIZE = 256
 REPEATS = 500
 SEED = 2026
+FEW = {"fine": 48, "coarse": 1024, "latin_hypercube": 256, "sobol": 256}  # rows for a look at the machinery
 
 
 def run(folder: Path, quick: bool, tell: Callable[[str], None]) -> Path:
@@ -32,14 +33,15 @@ def run(folder: Path, quick: bool, tell: Callable[[str], None]) -> Path:
         The report's path.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    cases = studies(dict.fromkeys(NUMBERS, 1024) if quick else NUMBERS)
+    cases = studies(FEW if quick else NUMBERS)
     found = columns(folder, cases, tell)
     banks = slope.banks(cases, found)
     number = 10 if quick else REPEATS
-    fine = _fine(banks, number, SIZES[:2] if quick else SIZES, tell)
+    fine = _fine(banks, number, SIZES[:1] if quick else SIZES, tell)
     references = {name: slope.reference(banks["pair"], question) for name, question in QUESTIONS.items()}
     coarse = list(_coarse(banks, number, tell))
-    draw(_on("pair", fine), references, folder / "probabilities.png")
+    curves = {name: {one: list(sizes.values()) for one, sizes in by.items()} for name, by in fine.items()}
+    draw(curves, references, folder / "probabilities.png")
     small = rare.limit_of(found["coarse"].run_out)
     seeds = rare.SEEDS[:1] if quick else rare.SEEDS
     subsets = list(rare.subset_simulations(cases["coarse"], small.limit, seeds, rare.SIZES, tell))
@@ -49,7 +51,7 @@ def run(folder: Path, quick: bool, tell: Callable[[str], None]) -> Path:
         ratio=banks["pair"].cost[1],
         repeats=number,
         gains="\n".join(_gains(fine, references)),
-        coverage="\n".join(_coverage(fine, references, COVERED if COVERED in SIZES and not quick else SIZES[0])),
+        coverage="\n".join(_coverage(fine, references, SIZES[0] if quick else COVERED)),
         coarse_rows=len(found["coarse"].run_out),
         replicate=REPLICATE,
         components=COMPONENTS,
@@ -77,10 +79,6 @@ def _fine(banks: dict[str, Bank], number: int, sizes: tuple[int, ...], tell: Cal
                     found[name].setdefault(estimator, {})[size] = judged
                     tell(f"{name}, {estimator}, {size}: error {judged.root_mean_square_error:.4g}")
     return found
-
-
-def _on(where: str, found: Found) -> dict[str, dict[str, list[Judged]]]:
-    return {name: {one: list(sizes.values()) for one, sizes in by.items()} for name, by in found.items()}
 
 
 def _plain_deviation(by: dict[str, dict[int, Judged]], reference: Reference) -> float:
