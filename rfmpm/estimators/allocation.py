@@ -25,10 +25,6 @@ class Allocation(NamedTuple):
     ratio: np.ndarray
     variance: np.ndarray
 
-    def variance_with(self, numbers: Sequence[float]) -> float:
-        """Return the variance of the estimate with these numbers of indices on the levels used."""
-        return float(np.sum(self.variance / np.asarray(numbers, float)))
-
 
 def allocate(nested: Nested, work: Sequence[float], levels: Sequence[int]) -> Allocation:
     """Share the work between given levels so that the variance is least.

@@ -90,8 +90,10 @@ class Contributions:
         """Return the estimates with their intervals.
 
         A mean has Student's t interval with Welch's degrees of freedom. So has a probability; its two half widths are
-        then corrected by what Wilson's score interval of the underlying counts has over Wald's, which matters where few
-        counts make the normal approximation and the estimated variance worthless, and clipped into 0 to 1.
+        then corrected by what better intervals of the underlying counts have over Wald's, which matters where few
+        counts make the normal approximation and the estimated variance worthless, and clipped into 0 to 1: Wilson's
+        score interval of a share, Agresti and Min's of a difference of paired indicators, which counts half a
+        difference of either sign more than there are.
 
         Args:
             confidence: level [-].
@@ -101,7 +103,8 @@ class Contributions:
             Expectation, arrays of shape (k,).
 
         Source: Zou and Donner (2008), Statistics in Medicine 27, 1693-1702, doi:10.1002/sim.3095, for intervals of a
-        sum recovered from the intervals of its parts.
+        sum recovered from the intervals of its parts; Agresti and Min (2005), Statistics in Medicine 24, 729-740,
+        doi:10.1002/sim.1781.
         """
         value, error = self.value, self.standard_error()
         if not len(self.unit):
@@ -122,13 +125,16 @@ def _corrected(half: np.ndarray, counts: tuple[Counts, ...], confidence: float) 
     z = ndtri(0.5 + confidence / 2.0)
     wald, down, up = (np.zeros(half.shape) for _ in range(3))
     for count in counts:
-        plus, (plus_lower, plus_upper) = count.plus / count.n, wilson(count.plus, count.n, confidence)
-        minus = minus_lower = minus_upper = np.zeros(half.shape)
-        if count.minus is not None:
-            minus, (minus_lower, minus_upper) = count.minus / count.n, wilson(count.minus, count.n, confidence)
-        wald += (count.scale * z) ** 2 * (plus + minus - (plus - minus) ** 2) / count.n
-        up += count.scale**2 * ((plus_upper - plus) ** 2 + (minus - minus_lower) ** 2)
-        down += count.scale**2 * ((plus - plus_lower) ** 2 + (minus_upper - minus) ** 2)
+        plus, minus, n = count.plus, 0.0 if count.minus is None else count.minus, count.n
+        square = (count.scale * z) ** 2
+        wald += square * (plus + minus - (plus - minus) ** 2 / n) / n**2
+        if count.minus is None:
+            lower, upper = wilson(plus, n, confidence)
+            down += (count.scale * (plus / n - lower)) ** 2
+            up += (count.scale * (upper - plus / n)) ** 2
+        else:
+            both = square * (plus + minus + 1.0 - (plus - minus) ** 2 / (n + 2.0)) / (n + 2.0) ** 2
+            down, up = down + both, up + both
     return tuple(_replaced(half, wald, score) for score in (down, up))
 
 

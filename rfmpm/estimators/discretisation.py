@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import ndtri
 
 from rfmpm.estimators.contributions import Contributions
 from rfmpm.estimators.monte_carlo import Estimate
@@ -74,6 +75,10 @@ def discretisation(
     unit = factor * steps[:, :1] / n
     found = Contributions(unit, np.zeros(n, int), np.zeros(1)).expectation(confidence, is_probability=False)
     value, error, lower, upper = (float(column[0]) for column in found)
+    if functions.is_probability:  # as if one more indicator differed: that none of n does leaves room for some
+        unseen = factor / (n + 2.0)
+        half = math.hypot(upper - value, float(ndtri(0.5 + confidence / 2.0)) * unseen)
+        error, lower, upper = math.hypot(error, unseen), value - half, value + half
     return Discretisation(value, error, lower, upper, order, is_observed, cells, n, note)
 
 

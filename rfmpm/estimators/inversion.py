@@ -18,17 +18,18 @@ def invert(curve: Callable[[np.ndarray], Expectation], values: np.ndarray, tail:
         tail: probability of exceeding the quantile [-].
 
     Returns:
-        The quantile, the lower and the upper bound: for each the least of the values at which the curve, its lower and
-        its upper edge are at most the tail; lower -inf or upper inf where an edge starts below or stays above.
+        The quantile, the lower and the upper bound: for each a value at which the curve, its lower and its upper edge
+        fall to the tail; lower -inf or upper inf where an edge is below it from the start, or stays above.
 
     Source: Woodruff (1952), J. Am. Stat. Assoc. 47, 635-646.
     """
     if not values.size:
         return float("nan"), float("-inf"), float("inf")
     value, lower, upper = (_first(curve, values, tail, name) for name in ("value", "lower", "upper"))
+    is_below = lower == 0 and curve(np.nextafter(values[:1], -np.inf)).lower[0] <= tail
     return (
         float(values[min(value, values.size - 1)]),
-        float(values[lower]) if 0 < lower < values.size else float("-inf"),
+        float(values[lower]) if lower < values.size and not is_below else float("-inf"),
         float(values[upper]) if upper < values.size else float("inf"),
     )
 

@@ -7,11 +7,14 @@ import numpy as np
 from rfmpm.estimators.bands import simultaneous_factor
 from rfmpm.estimators.contributions import Contributions
 from rfmpm.estimators.curves import Band
+from rfmpm.estimators.intervals import clopper_pearson
 from rfmpm.estimators.inversion import invert
 from rfmpm.estimators.monte_carlo import Estimate
 from rfmpm.estimators.protocol import Expectation
 from rfmpm.estimators.question import Exceedances, Functions, Question, Value
 from rfmpm.estimators.rows import Rows
+
+FEW = 10  # events on level 0, below which an interval may not be narrower than the exact one
 
 
 class LinearEstimator:
@@ -53,6 +56,8 @@ class LinearEstimator:
         failed = np.isnan(outcome[:, :1]) & (used.level == 0)[:, None]
         is_probability = functions.is_probability
         found = self.contributions(outcome, used, functions).expectation(confidence, is_probability)
+        if is_probability:
+            found = _wide_where_few(found, outcome[(used.level == 0) & ~failed[:, 0]], confidence)
         if not is_probability or not failed.any():
             return found
         low, high = (
@@ -174,6 +179,27 @@ class LinearEstimator:
         n = int(np.sum(used.level == 0))
         method = f"{self.method}; curve inverted"
         return Estimate(*found, self.question.confidence, n, method)
+
+
+def _wide_where_few(found: Expectation, own: np.ndarray, confidence: float) -> Expectation:
+    """Hold the exact interval of the study's own cells too where few of them exceed, or do not.
+
+    Neither a variance nor coefficients can be had from a handful of events.
+
+    Args:
+        found: the estimates.
+        own: indicators of the completed realisations on level 0, shape (n, k).
+        confidence: level [-].
+    """
+    n, count = len(own), own.sum(axis=0)
+    if n == 0:
+        return found
+    lower, upper = clopper_pearson(count, n, confidence)
+    is_few = np.minimum(count, n - count) < FEW
+    return found._replace(
+        lower=np.where(is_few, np.minimum(found.lower, lower), found.lower),
+        upper=np.where(is_few, np.maximum(found.upper, upper), found.upper),
+    )
 
 
 def _place(used: Rows, rows: Rows) -> np.ndarray:

@@ -107,7 +107,8 @@ class Multilevel(Staged):
                 place = float(np.searchsorted(values, self.question.limit, side="right"))
             fewest = min(FEWEST_TO_SHARE_BY, values.size // 2)
             place = int(np.clip(place, fewest, values.size - fewest))
-            functions = Exceedances(values[place - 1 : place])
+            if fewest > 0:
+                functions = Exceedances(values[place - 1 : place])
         return self._nested(functions(rows), rows, functions)
 
     def _nested(self, outcome: np.ndarray, rows: Rows, functions: Functions) -> Nested:

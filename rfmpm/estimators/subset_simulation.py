@@ -137,8 +137,7 @@ class SubsetSimulation:
         return max(1, math.ceil((growth - 1.0) * len(runs)))
 
     def _estimate(self, rows: Rows, course: Course, limit: float) -> Estimate:
-        finished = [run for run in course.runs if run.is_finished]
-        usable = finished or [run for run in course.runs if run.levels]
+        usable = [run for run in course.runs if run.levels]  # those that end first are not a fair sample of all
         own = rows.on_level(0)
         if not usable or all(_tail(run.levels, limit).n_levels == 1 for run in usable):
             number = min(own.numbers(1)[0], len(course.parent))

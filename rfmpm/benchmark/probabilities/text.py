@@ -12,9 +12,10 @@ lattice of 0.25 m cells. Its rows are kept in `probabilities_rows.nc`: {rows}. A
 
 ## Error over cost, cells of 0.25 m
 
-Gain: cost of plain Monte Carlo over that of the estimator at equal root-mean-square error. Reference: control variates
-on all rows. Draws share rows, and the reference has an error of its own (in the table), which makes the largest gains
-uncertain by some percent.
+Gain: cost of plain Monte Carlo over that of the estimator at equal root-mean-square error; corrected for drawing without
+putting back. Reference: control variates on all rows, which the draws share, so that errors look smaller than they are
+by what the reference itself errs (in the table); plain Monte Carlo, whose gain is 1 by definition, shows how far the
+rows at hand, few of which end differently on the two cell sizes, are off.
 
 {gains}
 
