@@ -12,10 +12,10 @@ lattice of 0.25 m cells. Its rows are kept in `probabilities_rows.nc`: {rows}. A
 
 ## Error over cost, cells of 0.25 m
 
-Gain: cost of plain Monte Carlo over that of the estimator at equal root-mean-square error; corrected for drawing without
-putting back. Reference: control variates on all rows, which the draws share, so that errors look smaller than they are
-by what the reference itself errs (in the table); plain Monte Carlo, whose gain is 1 by definition, shows how far the
-rows at hand, few of which end differently on the two cell sizes, are off.
+Gain: cost of plain Monte Carlo over that of the estimator at equal root-mean-square error; corrected for drawing
+without putting back. Reference: control variates on all rows, which the draws share, so that errors look smaller than
+they are by what the reference itself errs (in the table). Plain Monte Carlo, whose gain is 1 by definition, shows how
+far such figures are off: few rows end differently on the two cell sizes, and these make most of the difference.
 
 {gains}
 
