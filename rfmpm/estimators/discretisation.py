@@ -1,4 +1,4 @@
-"""Discretisation error of an expectation from realisations run on several cell sizes, and the error budget."""
+"""Discretisation error of an expectation from realisations run on several cell sizes."""
 
 import math
 from collections.abc import Sequence
@@ -8,14 +8,11 @@ import numpy as np
 from scipy.special import ndtri
 
 from rfmpm.estimators.contributions import Contributions
-from rfmpm.estimators.monte_carlo import Estimate
 from rfmpm.estimators.question import Functions
 from rfmpm.estimators.rows import Rows
 
 ASSUMED_ORDER = 1.0
 ORDERS = (0.5, 3.0)  # an observed order outside says that the cells are not yet in the range where one holds
-BALANCE = 0.5  # of the smaller over the larger error: within it both are worth spending on
-COST_EXPONENT = 3.0  # of time with 1 / cell size: points times steps in two dimensions
 
 
 @dataclass(frozen=True)
@@ -123,61 +120,3 @@ def _solve_order(ratio: float, cells: Sequence[float]) -> float | None:
         return (coarse - middle) / (middle - fine) - ratio
 
     return float(brentq(miss, *ORDERS)) if miss(ORDERS[0]) * miss(ORDERS[1]) <= 0.0 else None
-
-
-@dataclass(frozen=True)
-class Budget:
-    """Where the error of an estimate comes from, and what to spend on next.
-
-    Attributes:
-        sampling: half width of the estimate's interval, unit of the estimate.
-        discretisation: magnitude the discretisation error may have, the larger end of its interval; NaN if unknown.
-        spend_on: "realisations", "cells", "both" or "levels" (nothing is known of the discretisation error).
-        realisations_factor: number of realisations over the present one at which both errors are equal [-].
-        cell_m: cell size at which both errors are equal [m]; NaN if unknown.
-        advice: in a sentence.
-    """
-
-    sampling: float
-    discretisation: float
-    spend_on: str
-    realisations_factor: float
-    cell_m: float
-    advice: str
-
-
-def error_budget(estimate: Estimate, found: Discretisation | None) -> Budget:
-    """Say which of the sampling and the discretisation error to reduce next.
-
-    Args:
-        estimate: the answer with its interval.
-        found: its discretisation error; None where nothing is known.
-
-    Returns:
-        Budget.
-    """
-    sampling = 0.5 * (estimate.upper - estimate.lower)
-    if found is None or not math.isfinite(found.upper - found.lower):
-        advice = "Nothing is known of the discretisation error: run a few realisations on coarser cells as well."
-        return Budget(sampling, math.nan, "levels", math.nan, math.nan, advice)
-    bias = max(abs(found.lower), abs(found.upper))
-    known = abs(found.error)
-    if not math.isfinite(sampling):
-        advice = "Sampling error without bound: run more realisations."
-        return Budget(sampling, bias, "realisations", math.inf, found.cells[0], advice)
-    if bias == 0.0 and sampling == 0.0:
-        return Budget(0.0, 0.0, "both", 1.0, found.cells[0], "Neither error is seen.")
-    if bias > known + 2.0 * abs(known) and bias > sampling:
-        advice = f"The discretisation error is not known well: more than the {found.n} realisations on coarser cells."
-        return Budget(sampling, bias, "levels", 1.0, found.cells[0], advice)
-    factor = max(1.0, (sampling / bias) ** 2) if bias > 0.0 else math.inf
-    cell = found.cells[0] * min(1.0, (sampling / bias) ** (1.0 / found.order)) if bias > 0.0 else found.cells[0]
-    if BALANCE * sampling <= bias <= sampling / BALANCE:
-        advice = "Sampling and discretisation error are of one size: halving the whole error needs more of both."
-        return Budget(sampling, bias, "both", factor, cell, advice)
-    if sampling > bias:
-        more = f"about {factor:.2g} times as many" if math.isfinite(factor) else "more"
-        return Budget(sampling, bias, "realisations", factor, cell, f"Sampling error prevails: {more} realisations.")
-    cost = (found.cells[0] / cell) ** COST_EXPONENT
-    advice = f"Discretisation error prevails: cells of about {cell:.2g} m, each run about {cost:.2g} times the cost."
-    return Budget(sampling, bias, "cells", factor, cell, advice)

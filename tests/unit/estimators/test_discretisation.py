@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rfmpm.estimators import Estimate, Rows, Value
-from rfmpm.estimators.discretisation import discretisation, error_budget
+from rfmpm.estimators import Exceedances, Rows, Value
+from rfmpm.estimators.discretisation import discretisation
 
 CELLS = (0.25, 0.5, 1.0)
 
@@ -17,10 +17,6 @@ def rows_of(error, n: int = 200, scatter: float = 0.1, levels: int = 3) -> Rows:
     level = np.repeat(np.arange(levels), n)
     index = np.tile(np.arange(n), levels)
     return Rows(level, index, np.concatenate(value), np.zeros(level.size, bool), np.ones(level.size))
-
-
-def estimate(half: float) -> Estimate:
-    return Estimate(10.0, 10.0 - half, 10.0 + half, 0.95, 200, "")
 
 
 @pytest.mark.parametrize("order", [1.0, 2.0])
@@ -50,9 +46,7 @@ def test_identical_levels_have_no_error_and_one_level_none_known():
     rows = rows_of(lambda h: 0.0, scatter=0.0)
     found = discretisation(rows, Value(), CELLS)
     assert (found.error, found.lower, found.upper) == (0.0, 0.0, 0.0)
-    assert error_budget(estimate(0.1), found).spend_on == "realisations"
     assert discretisation(rows.on_level(0), Value(), CELLS) is None
-    assert error_budget(estimate(0.1), None).spend_on == "levels"
 
 
 def test_failed_realisations_are_left_out_on_all_levels():
@@ -61,20 +55,8 @@ def test_failed_realisations_are_left_out_on_all_levels():
     assert discretisation(rows, Value(), CELLS).n == 197
 
 
-def test_budget_names_the_larger_error_and_what_would_balance_it():
-    found = discretisation(rows_of(lambda h: -2.0 * h, levels=2), Value(), CELLS[:2])
-    bias = max(abs(found.lower), abs(found.upper))
-    few = error_budget(estimate(4.0 * bias), found)
-    assert few.spend_on == "realisations"
-    assert few.realisations_factor == pytest.approx(16.0, rel=1e-12)
-    many = error_budget(estimate(bias / 4.0), found)
-    assert many.spend_on == "cells"
-    assert many.cell_m == pytest.approx(0.25 / 4.0, rel=1e-12)
-    assert "0.06" in many.advice
-    assert error_budget(estimate(bias), found).spend_on == "both"
-    assert error_budget(Estimate(1.0, -np.inf, np.inf, 0.95, 1, ""), found).spend_on == "realisations"
-
-
-def test_a_poorly_known_discretisation_error_asks_for_more_coarse_runs():
-    found = discretisation(rows_of(lambda h: 0.0, n=4, scatter=1.0, levels=2), Value(), CELLS[:2])
-    assert error_budget(estimate(0.01), found).spend_on == "levels"
+def test_indicators_that_never_differ_leave_room_for_some_that_would():
+    found = discretisation(rows_of(lambda h: 0.0, n=64, levels=2), Exceedances(np.array([50.0])), [0.25, 0.5])
+    assert found.error == 0.0
+    # 1.96 / 66: half a difference of either sign more than none (Agresti and Min 2005)
+    assert found.upper == -found.lower == pytest.approx(1.96 / 66.0, rel=1e-3)
