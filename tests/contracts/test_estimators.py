@@ -2,8 +2,8 @@
 
 Coverage: 500 campaigns with fixed seeds (200 where coefficients are fitted); 0.95 but for 3.3 standard errors of such a
 measurement, and not above where an interval does not set out to be conservative (probabilities do while counts are few:
-Clopper-Pearson for plain Monte Carlo, allowances for others). Bias: with as many cases as here a bias of 2 standard errors comes about by chance, so 3.5 are allowed
-(two-sided chance of one false alarm among 50 cases: 2 %).
+Clopper-Pearson for plain Monte Carlo, allowances for others). Bias: with as many cases as here a bias of 2 standard
+errors comes about by chance, so 3.5 are allowed (two-sided chance of one false alarm among 50 cases: 2 %).
 """
 
 import numpy as np
