@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from synthetic import make_ensemble, make_study
 
-from rfmpm.report import answer, sections, words
+from rfmpm.report import answer, sections, summary_lines, words
 from rfmpm.report.answering import Answers
 from rfmpm.report.members import usable
 from rfmpm.report.numbers import analyse
@@ -87,3 +87,14 @@ def test_coarser_cells_are_named_in_a_caption_only_where_there_are_some(study, e
     numbers = analyse(ensemble, study)
     assert "on coarser cells" in _settling(numbers).caption
     assert "on coarser cells" not in _settling(replace(numbers, coarser=0)).caption
+
+
+def test_a_campaign_with_a_question_ends_with_its_answer_alone(study, ensemble):
+    answered, note, cells, cost = summary_lines(ensemble, study)
+    found = analyse(ensemble, study).answer
+    assert answered.startswith(f"mean run-out = {found.value:.4g} m, 95 % interval")
+    assert answered.endswith(f"{PAIRS} realisations on the study's own cells)")
+    assert note.startswith(f"with {3 * PAIRS} on coarser ones of 0.5 m")
+    assert "the answer is 1.0 m too low" in cells
+    assert cost.startswith("cost")
+    assert cost.endswith(f"0 of {4 * PAIRS} failed)")
