@@ -78,8 +78,19 @@ def precision(numbers: Numbers) -> list[str]:
     return found
 
 
-def sample(numbers: Numbers) -> str:
-    """Say of which realisations kinds of failure, pictures and histograms are, where not of all."""
+def sample(numbers: Numbers, study) -> str:
+    """Say of which realisations kinds of failure, pictures and histograms are, where not of all independent ones."""
+    sampling = study.estimator.sampling if study.estimator else "random"
+    if sampling == "saltelli":
+        return (
+            "Kinds of failure, inundation and factors of safety are counted over the first simulation of each base "
+            "point of the design: the others repeat a part of its numbers."
+        )
+    if sampling != "random":
+        return (
+            "Intervals of kinds of failure, inundation and factors of safety are those of independent simulations; "
+            "evenly spread ones scatter less, as a rule."
+        )
     if not numbers.has_chains:
         return ""
     shown = sum(numbers.statuses.values())

@@ -3,6 +3,7 @@
 import numpy as np
 from synthetic import make_ensemble, make_study
 
+from rfmpm.report import sections
 from rfmpm.report.answering import Answers
 from rfmpm.report.driving import drivers
 from rfmpm.report.numbers import analyse
@@ -47,3 +48,4 @@ def test_of_a_design_base_points_before_a_gap_count_and_their_first_blocks_alone
     numbers = analyse(ensemble, study)
     assert sum(mode.count for mode in numbers.modes) == 40
     assert numbers.given_failure["median"].n == 40
+    assert "first simulation of each base point" in sections.sample(numbers, study)
