@@ -93,18 +93,12 @@ def run(
     dataset = _campaign(settings, folder, workers, options)
     if dataset is None:
         return  # another rank than the first
-    from rfmpm import planning
     from rfmpm import report as reporting
 
     typer.echo(f"dataset: {folder / 'ensemble.nc'}")
-    if settings.study.until is not None:
-        for line in planning.answer_lines(settings, planning.answer(settings, planning.rows_of(settings, dataset))):
-            typer.echo(line)
     typer.echo(f"report:  {reporting.write(folder)}")
-    if not planning.has_chains(settings):  # their realisations are no fair sample of the slope
-        own = dataset if settings.estimator is None else planning.on_own_cells(dataset)
-        for line in reporting.summary_lines(own, settings):
-            typer.echo(line)
+    for line in reporting.summary_lines(dataset, settings):
+        typer.echo(line)
     allowed = settings.failures.max_failed_fraction if allow_failed is None else allow_failed
     end_if_too_many_failed(failures(dataset), dataset.sizes["realisation"], allowed)
 

@@ -70,7 +70,14 @@ def answer_lines(study, found: Estimate) -> list[str]:
         half = 0.5 * (found.upper - found.lower)
         wanted = in_words(question).removeprefix(f"{in_words(plain_question)} ")
         lines.append(f"not known {wanted}, as was asked, but {half:.3g}{unit}: study.until.at_most ended it")
-    return lines + ([found.note] if found.note else [])
+    return lines + ([_with_sizes(found.note, study)] if found.note else [])
+
+
+def _with_sizes(note: str, study) -> str:
+    """Say the size of coarser cells where a note says their number."""
+    for number, cell in enumerate(study.estimator.coarser_cells_m or () if study.estimator else (), 1):
+        note = note.replace(f"coarser cells no. {number}", f"coarser ones of {cell:g} m")
+    return note
 
 
 def _name(quantity: str) -> str:

@@ -52,14 +52,14 @@ def _same(numbers: Numbers) -> str:
 
 
 def _certain(numbers: Numbers, topic: str, width: float, level: str) -> str:
-    """Where none or all exceed: a bound, as the estimate itself says nothing."""
+    """Where the estimate is 0 or 1: a bound, as it says nothing itself; and whether none or all did exceed."""
     none = numbers.answer.value == 0.0
     bound = numbers.budget.upper if none else numbers.budget.lower
-    side, which = ("below", "none") if none else ("above", "all")
-    return (
-        f"{topic} is {side} {words.share(bound, width)} with {level} confidence: {which} of "
-        f"{words.count(numbers.completed, SIMULATION)} did."
-    )
+    side, which, so_many = ("below", "none", 0) if none else ("above", "all", numbers.completed)
+    found = f"{topic} is {side} {words.share(bound, width)} with {level} confidence"
+    if numbers.beyond != so_many:  # coarser cells moved the estimate there
+        return f"{found}."
+    return f"{found}: {which} of {words.count(numbers.completed, SIMULATION)} did."
 
 
 def _bound(value: float, width: float, numbers: Numbers) -> str:
@@ -74,9 +74,10 @@ def certainty(numbers: Numbers, study) -> str:
         return f"What the size of the cells ({study.discretisation.cell_m:g} m) adds is unknown."
     if numbers.budget.is_whole:
         return "The bounds count both the limited number of simulations and the size of the cells."
+    why = "too few were simulated on coarser cells too" if numbers.coarser else "they were all of one size"
     return (
         "The bounds count the limited number of simulations alone. What the size of the cells "
-        f"({study.discretisation.cell_m:g} m) adds is unknown: they were all of one size."
+        f"({study.discretisation.cell_m:g} m) adds is unknown: {why}."
     )
 
 

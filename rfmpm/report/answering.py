@@ -70,12 +70,21 @@ class Answers:
         return self._asking().exceedance_curve(self.rows, limits)
 
     def without_failures(self) -> estimators.Estimate:
-        """The answer had the failed and censored simulations come to an ordinary end."""
+        """The answer had the failed and censored simulations come to an ordinary end.
+
+        Failed ones count as not exceeding; a mean or quantile leaves them out, but for a quantile of a design or of
+        several levels, whose interval counts them both ways here too.
+        """
         rows = self.rows
         if self.has_chains:  # what followed from a failed one would have been another
             return self.estimate(rows)
-        value = np.where(rows.is_failed & (rows.level == 0), 0.0, rows.value)
-        return self.estimate(replace(rows, value=value, is_censored=np.zeros(value.shape, bool)))
+        failed = rows.is_failed & (rows.level == 0)
+        rows = replace(rows, is_censored=np.zeros(failed.shape, bool))
+        if self.question.kind == "exceedance":
+            return self.estimate(replace(rows, value=np.where(failed, 0.0, rows.value)))
+        if self.is_plain:  # any of them may be left out; the others move up
+            rows = replace(rows, index=rows.index - np.cumsum(failed)).where(~failed)
+        return self.estimate(rows)
 
     def settling(self) -> Band:
         """Follow the answer as rows are added on all levels alike, over the number on the study's own cells."""

@@ -113,6 +113,8 @@ def _repair(s: Standing) -> str:
 
 def _more(s: Standing) -> str:
     half = s.budget.sampling
+    if 0.5 * (s.answer.upper - s.answer.lower) <= s.wanted < np.inf:
+        return ""
     if 0.0 < s.wanted < half < np.inf:
         needed = s.used * (half / s.wanted) ** 2
         return f"Run on: about {words.number(needed, 2)} simulations in all would give the precision asked for."

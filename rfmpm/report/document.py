@@ -87,7 +87,7 @@ def _page(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], dr
         precision=sections.precision(numbers),
         charts=charts(rows, numbers),
         unvarying=unvarying(rows),
-        sample=sections.sample(numbers),
+        sample=sections.sample(numbers, study),
         modes=sections.mode_cards(numbers, thumbnails),
         slopes=slopes,
         drivers=driven,

@@ -9,7 +9,7 @@ from rfmpm import planning
 from rfmpm.estimators.sensitivity import FEWEST, arrange, given_data_indices, sobol_indices
 from rfmpm.report.answering import Answers
 from rfmpm.report.asked import NOUNS
-from rfmpm.report.members import usable
+from rfmpm.report.members import independent, usable
 from rfmpm.report.style import Picture
 
 MOST_FIELDS = 500  # that are made again; a correlation then has a noise of 0.05
@@ -52,7 +52,9 @@ def _of_numbers(found: Drivers, dataset, study, answers: Answers, noun: str) -> 
     keys, has_fields = [entry.key for entry in study.uncertain], bool(study.random_field)
     if _is_design(study):
         labels = group_labels(keys, has_fields)
-        indices = sobol_indices(arrange(answers.rows, len(labels)), answers.confidence)
+        blocks = len(labels) + 2
+        whole = usable(dataset, study).sizes["realisation"] // blocks * blocks  # later ones may be the quick ones
+        indices = sobol_indices(arrange(answers.rows.first([whole]), len(labels)), answers.confidence)
         if np.isfinite(indices.total).any():
             found.charts.append(sobol_chart(labels, indices, noun))
             found.numbers["sobol_indices"] = {"groups": labels, "indices": indices}
@@ -75,11 +77,8 @@ def _of_fields(found: Drivers, dataset, study, quantity: str, replay: "planning.
     from rfmpm.mpm.scene import outline
     from rfmpm.report.sensitivity_figures import influence_map
 
-    rows = usable(dataset, study)
+    rows = independent(usable(dataset, study), study)
     index, values = rows["realisation"].values, rows[quantity].values
-    if _is_design(study):  # the first block of each base point
-        first = index % (2 + len(study.uncertain) + bool(study.random_field)) == 0
-        index, values = index[first], values[first]
     if np.sum(~np.isnan(values)) < FEWEST or np.nanmax(values) == np.nanmin(values):
         return
     prepared = replay.prepared

@@ -3,6 +3,7 @@
 import numpy as np
 
 from rfmpm import estimators
+from rfmpm.study.question_checks import saltelli_size
 
 CENSORED_BY = {  # what marks a value of a quantity as a lower bound
     "run_out": ("run_out_censored",),
@@ -33,6 +34,20 @@ def usable(dataset, study=None):
     if design is not None and design.method == "subset_simulation":
         count = min(count, design.level_size)
     return dataset.isel(realisation=slice(count))
+
+
+def independent(rows, study):
+    """Return the rows that do not repeat each other: of a saltelli design the first block of each base point.
+
+    Args:
+        rows: as `usable` gives them.
+        study: their Study.
+    """
+    design = study.estimator
+    if design is None or design.sampling != "saltelli":
+        return rows
+    blocks = saltelli_size(len(study.uncertain), bool(study.random_field))
+    return rows.isel(realisation=rows["realisation"].values % blocks == 0)
 
 
 def first_index(dataset) -> int:

@@ -14,7 +14,7 @@ from rfmpm.report.answering import Answers
 from rfmpm.report.asked import Asked, asked
 from rfmpm.report.budget import Budget, Standing, budget, next_steps
 from rfmpm.report.costs import cost
-from rfmpm.report.members import censored_members, first_index, flagged, reasons, statuses, usable
+from rfmpm.report.members import censored_members, first_index, flagged, independent, reasons, statuses, usable
 from rfmpm.report.modes import Mode, modes
 from rfmpm.report.safety import Safety, safety
 
@@ -79,6 +79,7 @@ def analyse(dataset, study) -> Numbers:
         Numbers.
     """
     rows, answers = usable(dataset, study), Answers(dataset, study, CONFIDENCE)
+    counted = independent(rows, study)
     return Numbers(
         **_answer(planning.on_own_cells(dataset) if answers.has_chains else rows, study, answers),
         **_of_run_out(rows, study, answers),
@@ -86,8 +87,8 @@ def analyse(dataset, study) -> Numbers:
         coarser=int(np.sum(dataset["level"].values > 0)),
         held=int(np.sum(dataset["level"].values == 0)),
         first=first_index(dataset),
-        modes=modes(rows, CONFIDENCE),
-        safety=safety(rows, CONFIDENCE),
+        modes=modes(counted, CONFIDENCE),
+        safety=safety(counted, CONFIDENCE),
         statuses=statuses(rows),
         reasons=reasons(rows),
         quality={name: _median_and_worst(rows[name].values) for name in QUALITY if name in rows},
@@ -133,6 +134,7 @@ def _of_run_out(rows, study, answers: Answers) -> dict:
     run_out, censored = rows["run_out"].values, censored_members(rows)
     limit, volume = float(study.quantities.run_out_limit_m), rows["failure_volume"].values
     fails = (volume > 0.0) | np.isnan(run_out)  # what did not complete may have failed: it counts both ways
+    fails &= np.isin(rows["realisation"].values, independent(rows, study)["realisation"].values)
     every = answers.rows_of("run_out")
     ask = {"quantity": "run_out", "limit": limit, "probability": None}
     return {
@@ -165,7 +167,7 @@ def _curves(rows, study, answers: Answers) -> dict:
         "running_exceedance": running,
         "settling": None if answers.is_plain and question.kind != "quantile" else answers.settling(),
         "inundation_depth": float(study.quantities.inundation_depth_m),
-        "inundation": _inundation(rows, study),
+        "inundation": _inundation(independent(rows, study), study),
     }
 
 

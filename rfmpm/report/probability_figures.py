@@ -141,13 +141,14 @@ def _settling(numbers: Numbers) -> Picture:
     axes.set(xlabel="realisations on the study's own cells", ylabel=f"answer [{unit}]" if unit else "probability")
     if asked.is_probability:
         axes.set_ylim(-0.02, 1.02)
+    coarser = "Those on coarser cells are added in the same proportion. " if numbers.coarser else ""
     last = words.supported(float(band.value[-1]), float(band.upper[-1] - band.lower[-1]), unit)
     return Picture(
         "The answer as realisations are added",
         encode(figure, CHART_DOTS_PER_INCH),
         f"Line of the answer against the number of realisations on the study's own cells, ending at {last}, with a "
         "band that narrows.",
-        f"Those on coarser cells are added in the same proportion. Band: {LEVEL} interval of the estimator.",
+        f"{coarser}Band: {LEVEL} interval of the estimator.",
     )
 
 

@@ -5,6 +5,7 @@ from collections import Counter
 
 from rfmpm.report import modes as kinds
 from rfmpm.report import words
+from rfmpm.report.answering import FEWEST_PAIRS
 from rfmpm.report.costs import WATTS_PER_CORE
 from rfmpm.report.numbers import Numbers
 from rfmpm.report.question import NAMES
@@ -26,13 +27,22 @@ def error_parts(numbers: Numbers, study) -> list[dict]:
     if budget.failed > 0.0:
         parts.append(("failed or cut-off simulations", budget.failed))
     largest = max((size for _, size in parts if size is not None and math.isfinite(size)), default=0.0)
-    return [{"label": label, "size": _plus_minus(size, unit), "share": _share(size, largest)} for label, size in parts]
+    found = [{"label": label, "size": _plus_minus(size, unit), "share": _share(size, largest)} for label, size in parts]
+    if cells := numbers.discretisation:
+        sides = (("+", max(-cells.lower, 0.0)), ("-", max(cells.upper, 0.0)))
+        moved = [_signed(sign, size, unit) for sign, size in sides if size > 0.0]
+        found[int(numbers.is_random)]["size"] = " / ".join(moved) or _plus_minus(0.0, unit)
+    return found
 
 
 def _plus_minus(size: float | None, unit: str) -> str:
     if size is None or math.isinf(size):
         return "unknown" if size is None else "unbounded"
-    return f"± {words.number(size, 2)}{' ' if unit else ''}{unit}"
+    return _signed("±", size, unit)
+
+
+def _signed(sign: str, size: float, unit: str) -> str:
+    return f"{sign} {words.number(size, 2)}{' ' if unit else ''}{unit}"
 
 
 def _share(size: float | None, largest: float) -> float | None:
@@ -58,13 +68,29 @@ def precision(numbers: Numbers) -> list[str]:
             f"{words.number(max(cells.upper, 0.0), 2)}{unit} downwards and {words.number(max(-cells.lower, 0.0), 2)}"
             f"{unit} upwards ({cells.note})."
         )
+    elif numbers.coarser:
+        found.append(
+            f"Fewer than {FEWEST_PAIRS} realisations completed on two sizes of cells, too few to tell the error that "
+            "these make."
+        )
     else:
         found.append("All realisations were simulated on one size of cells, so the error that this makes is unknown.")
     return found
 
 
-def sample(numbers: Numbers) -> str:
-    """Say of which realisations kinds of failure, pictures and histograms are, where not of all."""
+def sample(numbers: Numbers, study) -> str:
+    """Say of which realisations kinds of failure, pictures and histograms are, where not of all independent ones."""
+    sampling = study.estimator.sampling if study.estimator else "random"
+    if sampling == "saltelli":
+        return (
+            "Kinds of failure, inundation and factors of safety are counted over the first simulation of each base "
+            "point of the design: the others repeat a part of its numbers."
+        )
+    if sampling != "random":
+        return (
+            "Intervals of kinds of failure, inundation and factors of safety are those of independent simulations; "
+            "evenly spread ones scatter less, as a rule."
+        )
     if not numbers.has_chains:
         return ""
     shown = sum(numbers.statuses.values())

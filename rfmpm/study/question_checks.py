@@ -102,7 +102,8 @@ def _method_has_what_it_needs(known: Known) -> Iterator[Problem]:
 
 
 def _design_is_whole(known: Known) -> Iterator[Problem]:
-    if (chosen := _estimator(known)) is None or chosen[1] == "random":
+    chosen = _estimator(known)
+    if chosen is None or chosen[1] == "random" or chosen[0] != "monte_carlo":  # others have no design
         return
     size = known[f"{OWN}.replicate_size"]
     if chosen[1] == "saltelli":
@@ -116,6 +117,8 @@ def _design_is_whole(known: Known) -> Iterator[Problem]:
     number = known[key] if _has_question(known) else known[key] or 1
     if number is not None and number < least:
         text = f"must be at least {least}: {FEWEST_REPLICATES} replicates of the design, whose scatter tells its error"
+        if chosen[1] != "saltelli" and number >= 2 * FEWEST_REPLICATES:
+            text += f"; or let estimator.replicate_size be at most {number // FEWEST_REPLICATES}"
         yield Problem(path_of(key), text, number)
     elif number is not None and not _has_question(known) and number % (least // FEWEST_REPLICATES):
         text = f"must be whole replicates of the design, a multiple of {least // FEWEST_REPLICATES}"

@@ -47,6 +47,10 @@ def study():
             {"estimator": {"sampling": "sobol", "replicate_size": 48}},
             "must be a power of two for sobol; nearest: 32",
         ),
+        (
+            {"estimator": {"sampling": "sobol"}, "study.until.at_most": 400},
+            "tells its error; or let estimator.replicate_size be at most 50",
+        ),
         ({"estimator": LEVELS, "study.until": None}, "needs a question"),
         ({"estimator": {"method": "subset_simulation"}, "study.until": MEAN}, "finds a probability of exceeding"),
         ({"estimator": LEVELS | {"coarser_cells_m": [0.25]}}, "must be larger than the cells before it, 0.25 m"),
@@ -95,3 +99,9 @@ def test_the_limit_is_physics_where_chains_run_towards_it(study):
     rare = study.with_changes({"estimator": {"method": "subset_simulation"}})
     assert rare.with_changes({"study.until.half_width": 0.01}).physics_hash == rare.physics_hash
     assert rare.with_changes({"study.until.exceeds_m": 9.0}).physics_hash != rare.physics_hash
+
+
+def test_a_design_that_is_refused_is_not_counted(study):
+    with pytest.raises(StudyError) as refusal:
+        study.with_changes({"estimator": LEVELS | {"sampling": "sobol"}, "study.until.at_most": 400})
+    assert "must be at least" not in str(refusal.value)

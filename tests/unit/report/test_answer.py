@@ -111,3 +111,25 @@ def test_factors_of_safety_stand_beside_failures():
     assert found.below_one.value == 14 / 20
     assert found.failing.value == 11 / 19
     assert sections.safety(analyse(ensemble, study))["rows"][0] == ("factor of safety below 1", 11, 2)
+
+
+def test_none_did_is_said_only_where_it_is_so():
+    study = make_study(**{"quantities.run_out_limit_m": 0.0})
+    none = analyse(make_ensemble(study, still=range(64)), study)
+    assert answer.headline(none).endswith("none of 64 simulations did.")
+    assert answer.headline(replace(none, beyond=3)).endswith("with 95 % confidence.")  # coarser cells moved it to 0
+
+
+def test_failed_simulations_are_no_part_of_the_sampling_error_of_a_mean_or_quantile():
+    for aim in ({"half_width_m": 5.0}, {"quantile": 0.5, "half_width_m": 5.0}):
+        study = asking({"quantity": "run_out", "at_most": 64} | aim)
+        whole = analyse(make_ensemble(study, failed=(5, 40)), study)
+        rest = make_ensemble(study, failed=(5, 40)).isel(realisation=[i for i in range(64) if i not in (5, 40)])
+        alone = analyse(rest.assign_coords(realisation=np.arange(62)), study)
+        assert whole.budget.sampling == pytest.approx(alone.budget.sampling, rel=1e-12)  # identity
+        assert not any("Run" in step for step in whole.next_steps)
+
+
+def test_no_more_runs_where_the_answer_is_as_narrow_as_wanted():
+    study = asking({"quantity": "run_out", "exceeds_m": 1e3, "half_width": 0.1, "at_most": 64})
+    assert not any("Run" in step for step in analyse(make_ensemble(study), study).next_steps)

@@ -1,13 +1,17 @@
 """Answers from rows on several sizes of cells."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
 from synthetic import make_ensemble, make_study
 
+from rfmpm.report import answer, sections, summary_lines, words
 from rfmpm.report.answering import Answers
 from rfmpm.report.members import usable
 from rfmpm.report.numbers import analyse
+from rfmpm.report.probability_figures import _settling
 
 PAIRS = 40
 
@@ -62,3 +66,35 @@ def test_a_part_of_a_study_is_answered_from_its_own_first_realisation():
     part = make_ensemble(study, n=20)
     part = part.assign_coords(realisation=part["realisation"] + 32).assign_attrs(first_realisation=32)
     assert analyse(part, study).answer.value == analyse(make_ensemble(study, n=20), study).answer.value
+
+
+def test_the_bar_of_the_cells_has_the_sides_of_their_error(study, ensemble):
+    numbers = analyse(ensemble, study)
+    cells, bar = numbers.discretisation, sections.error_parts(numbers, study)[1]
+    assert cells.upper < 0.0  # the coarser ones go less far for sure
+    assert bar["size"] == f"+ {words.number(-cells.lower, 2)} m"
+
+
+def test_few_pairs_are_not_called_one_size_of_cells(study, ensemble):
+    few = ensemble.isel(realisation=[*range(9), *range(PAIRS, PAIRS + 27)])
+    numbers = analyse(few, study)
+    assert numbers.discretisation is None
+    assert "too few were simulated on coarser cells" in answer.certainty(numbers, study)
+    assert "Fewer than 10 realisations completed on two sizes" in sections.precision(numbers)[1]
+
+
+def test_coarser_cells_are_named_in_a_caption_only_where_there_are_some(study, ensemble):
+    numbers = analyse(ensemble, study)
+    assert "on coarser cells" in _settling(numbers).caption
+    assert "on coarser cells" not in _settling(replace(numbers, coarser=0)).caption
+
+
+def test_a_campaign_with_a_question_ends_with_its_answer_alone(study, ensemble):
+    answered, note, cells, cost = summary_lines(ensemble, study)
+    found = analyse(ensemble, study).answer
+    assert answered.startswith(f"mean run-out = {found.value:.4g} m, 95 % interval")
+    assert answered.endswith(f"{PAIRS} realisations on the study's own cells)")
+    assert note.startswith(f"with {3 * PAIRS} on coarser ones of 0.5 m")
+    assert "the answer is 1.0 m too low" in cells
+    assert cost.startswith("cost")
+    assert cost.endswith(f"0 of {4 * PAIRS} failed)")

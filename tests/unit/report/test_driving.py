@@ -3,8 +3,10 @@
 import numpy as np
 from synthetic import make_ensemble, make_study
 
+from rfmpm.report import sections
 from rfmpm.report.answering import Answers
 from rfmpm.report.driving import drivers
+from rfmpm.report.numbers import analyse
 
 KEYS = ("material.0.residual_cohesion_kpa", "boundary.base.coefficient")
 
@@ -35,3 +37,15 @@ def test_nothing_is_said_where_nothing_can_be():
     found = drivers(ensemble, study, Answers(ensemble, study, 0.95), None)
     assert found.charts + found.maps == []
     assert found.numbers == {}
+
+
+def test_of_a_design_base_points_before_a_gap_count_and_their_first_blocks_alone_have_intervals():
+    study = uncertain_study().with_changes({"estimator": {"sampling": "saltelli"}, "study.realisations": 200})
+    ensemble = make_ensemble(make_study(), n=200)
+    holed = ensemble.isel(realisation=[i for i in range(200) if i != 152])  # blocks of 5: base point 30 is not whole
+    found = drivers(holed, study, Answers(holed, study, 0.95), None)
+    assert found.numbers["sobol_indices"]["indices"].base_points == 30
+    numbers = analyse(ensemble, study)
+    assert sum(mode.count for mode in numbers.modes) == 40
+    assert numbers.given_failure["median"].n == 40
+    assert "first simulation of each base point" in sections.sample(numbers, study)
