@@ -2,6 +2,7 @@
 
 from copy import copy
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from scipy.special import ndtri
@@ -57,11 +58,16 @@ class Answers:
         """Answer the question, or that one with some of its parts changed, from some rows."""
         return self._asking(**changes).estimate(rows)
 
+    @cached_property
+    def _estimator(self):
+        """Of the campaign; what it knows of the fields takes seconds to find."""
+        return planning.estimator_of(self.study)
+
     def _asking(self, **changes):
         if changes and self.has_chains:  # which answer their own question alone
             plain = replace(self.question, half_width=None, relative_half_width=None, **changes)
             return estimators.MonteCarlo(plain, self.study.estimator.level_size)
-        estimator = copy(planning.estimator_of(self.study))
+        estimator = copy(self._estimator)
         estimator.question = replace(self.question, **changes)
         return estimator
 
