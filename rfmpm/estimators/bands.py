@@ -1,7 +1,7 @@
 """Bands that hold a whole curve at once, from the contributions of independent units."""
 
 import numpy as np
-from scipy.special import ndtri
+from scipy.special import stdtrit
 
 from rfmpm.estimators.contributions import Contributions
 
@@ -13,7 +13,8 @@ def simultaneous_factor(found: Contributions, confidence: float) -> float:
     """Return by how much pointwise intervals have to be widened to hold all k expectations at once.
 
     The units' deviations are multiplied by independent standard normals, which gives the largest studentised error over
-    the curve its distribution; the seed is fixed, so the same rows give the same band.
+    the curve its distribution; their common standard error is as uncertain as Student's t has it, which matters where
+    units are few. The seed is fixed, so the same rows give the same band.
 
     Args:
         found: contributions, shape (n, k).
@@ -37,5 +38,7 @@ def simultaneous_factor(found: Contributions, confidence: float) -> float:
         np.abs(generator.standard_normal((min(batch, DRAWS - start), len(scaled))) @ scaled).max(axis=1)
         for start in range(0, DRAWS, batch)
     ]
-    sup = np.quantile(np.concatenate(largest), confidence)
-    return max(1.0, float(sup / ndtri(0.5 + confidence / 2.0)))
+    freedom = float(np.min(found.degrees_of_freedom()[varies]))
+    scatter = np.sqrt(generator.chisquare(freedom, DRAWS) / freedom)
+    sup = np.quantile(np.concatenate(largest) / scatter, confidence)
+    return max(1.0, float(sup / stdtrit(freedom, 0.5 + confidence / 2.0)))
