@@ -1,6 +1,8 @@
 """The report of the estimators: probabilities.md and its picture."""
 
+import multiprocessing
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +18,7 @@ from rfmpm.benchmark.probabilities.text import TEXT
 SIZES = (32, 64, 128)  # realisations on 0.25 m cells
 COVERED = 128  # of them for the table of coverage
 COARSE_SIZE = 256
-REPEATS = 500
+REPEATS, SLOWER = 300, 3  # of a mean or a probability; a quantile has fewer by this factor
 SEED = 2026
 FEW = {"fine": 48, "coarse": 1024, "latin_hypercube": 256, "sobol": 256}  # rows for a look at the machinery
 
@@ -50,6 +52,7 @@ def run(folder: Path, quick: bool, tell: Callable[[str], None]) -> Path:
         rows=", ".join(f"{len(column.run_out)} ({name.replace('_', ' ')})" for name, column in found.items()),
         ratio=banks["pair"].cost[1],
         repeats=number,
+        fewer=number // SLOWER,
         gains="\n".join(_gains(fine, references)),
         coverage="\n".join(_coverage(fine, references, SIZES[0] if quick else COVERED)),
         coarse_rows=len(found["coarse"].run_out),
@@ -68,17 +71,39 @@ Found = dict[str, dict[str, dict[int, Judged]]]  # by question, estimator and nu
 
 
 def _fine(banks: dict[str, Bank], number: int, sizes: tuple[int, ...], tell: Callable[[str], None]) -> Found:
-    bank, found = banks["pair"], {}
-    for name, question in QUESTIONS.items():
-        truth = slope.reference(bank, question).value
-        found[name] = {}
-        for size in sizes:
-            for estimator, (where, make) in makers(question, size).items():
-                if where == "pair":
-                    judged = judge(list(repeats(make, bank, number, SEED)), truth)
-                    found[name].setdefault(estimator, {})[size] = judged
-                    tell(f"{name}, {estimator}, {size}: error {judged.root_mean_square_error:.4g}")
+    truths = {name: slope.reference(banks["pair"], question).value for name, question in QUESTIONS.items()}
+    jobs = [(name, estimator, size) for name in QUESTIONS for size in sizes for estimator in _of("pair")]
+    return _carried_out(jobs, banks, truths, number, tell)
+
+
+def _of(*where: str) -> list[str]:
+    """The estimators that draw from some of the banks."""
+    return [name for name, (bank, _) in makers(QUESTIONS["mean"], 1).items() if bank in where]
+
+
+def _carried_out(
+    jobs: list[tuple[str, str, int]],
+    banks: dict[str, Bank],
+    truths: dict[str, float],
+    number: int,
+    tell: Callable[[str], None],
+) -> Found:
+    """Judge question, estimator and number of realisations of each job, as many at once as there are processors."""
+    found: Found = {}
+    with multiprocessing.get_context("fork").Pool() as pool:
+        judged = pool.imap(partial(_judged, banks, truths, number), jobs)
+        for (name, estimator, size), one in zip(jobs, judged, strict=True):
+            found.setdefault(name, {}).setdefault(estimator, {})[size] = one
+            tell(f"{name}, {estimator}, {size}: error {one.root_mean_square_error:.4g}, coverage {one.coverage:.3f}")
     return found
+
+
+def _judged(banks: dict[str, Bank], truths: dict[str, float], number: int, job: tuple[str, str, int]) -> Judged:
+    name, estimator, size = job
+    where, make = makers(QUESTIONS[name], size)[estimator]
+    if QUESTIONS[name].kind == "quantile":  # each takes a hundred times as long
+        number //= SLOWER
+    return judge(list(repeats(make, banks[where], number, SEED)), truths[name])
 
 
 def _plain_deviation(by: dict[str, dict[int, Judged]], reference: Reference) -> float:
@@ -122,18 +147,19 @@ def _bias(judged: Judged, reference: Reference) -> str:
 
 
 def _coarse(banks: dict[str, Bank], number: int, tell: Callable[[str], None]) -> Iterator[str]:
-    yield "| question | estimator, 256 realisations | bias / standard error | coverage | variance ratio |"
+    references = {name: slope.reference(banks["coarse"], question) for name, question in QUESTIONS.items()}
+    estimators = _of("coarse", "latin_hypercube", "sobol")
+    jobs = [(name, estimator, COARSE_SIZE) for name in QUESTIONS for estimator in estimators]
+    truths = {name: reference.value for name, reference in references.items()}
+    found = _carried_out(jobs, banks, truths, number, tell)
+    yield f"| question | estimator, {COARSE_SIZE} realisations | bias / standard error | coverage | variance ratio |"
     yield "|---|---|---|---|---|"
-    for name, question in QUESTIONS.items():
-        reference, plain = slope.reference(banks["coarse"], question), None
-        for estimator, (where, make) in makers(question, COARSE_SIZE).items():
-            if where == "pair":
-                continue
-            one = judge(list(repeats(make, banks[where], number, SEED)), reference.value)
-            plain = plain or one.root_mean_square_error
-            tell(f"0.5 m: {name}, {estimator}: coverage {one.coverage:.3f}")
+    for name, by in found.items():
+        plain = next(iter(by.values()))[COARSE_SIZE].root_mean_square_error
+        for estimator, sizes in by.items():
+            one = sizes[COARSE_SIZE]
             ratio = (plain / one.root_mean_square_error) ** 2
-            yield f"| {name} | {estimator} | {_bias(one, reference)} | {one.coverage:.3f} | {ratio:.2f} |"
+            yield f"| {name} | {estimator} | {_bias(one, references[name])} | {one.coverage:.3f} | {ratio:.2f} |"
 
 
 def _small(small: rare.Small, number: int) -> str:

@@ -6,7 +6,8 @@ TEXT = """\
 Made by `rfmpm benchmark probabilities`. The slope is that of `configs/short_slope_random.toml` with its fields on a
 lattice of 0.25 m cells. Its rows are kept in `probabilities_rows.nc`: {rows}. A realisation on cells of 0.5 m takes
 {ratio:.3f} of the processor time of one on 0.25 m (measured in turns here); all costs below are in realisations on
-0.25 m cells. Estimators draw realisations from these rows, without putting them back, {repeats} times each.
+0.25 m cells. Estimators draw realisations from these rows, without putting them back, {repeats} times each
+(quantiles {fewer}).
 
 ![Root-mean-square error over cost](probabilities.png)
 
