@@ -1,5 +1,6 @@
 """What every linear estimator answers once it can say what its units contribute: estimates, curves, quantiles."""
 
+from abc import ABC, abstractmethod
 from dataclasses import replace
 
 import numpy as np
@@ -17,16 +18,17 @@ from rfmpm.estimators.rows import Rows
 FEW = 10  # events on level 0, below which an interval may not be narrower than the exact one
 
 
-class LinearEstimator:
+class LinearEstimator(ABC):
     """Answers of an estimator that offers `used(rows)` and `contributions(outcome, rows, functions)`."""
 
     question: Question
     method: str
 
+    @abstractmethod
     def used(self, rows: Rows) -> Rows:
         """Return the rows that an estimate may rest on: those without a gap before them."""
-        raise NotImplementedError
 
+    @abstractmethod
     def contributions(self, outcome: np.ndarray, rows: Rows, functions: Functions) -> Contributions:
         """Return what the units of the used rows contribute.
 
@@ -35,7 +37,6 @@ class LinearEstimator:
             rows: as `used` gives them.
             functions: whose expectations are estimated.
         """
-        raise NotImplementedError
 
     def expectation(self, rows: Rows, functions: Functions) -> Expectation:
         """Estimate the means of k functions of the quantity, each with its own interval.

@@ -1,6 +1,7 @@
 """Plans in stages: run up to some numbers, look at what came of it, decide how many more."""
 
 import math
+from abc import abstractmethod
 
 import numpy as np
 
@@ -49,13 +50,13 @@ class Staged(LinearEstimator):
         self.question = question
         self.realisations = realisations
 
+    @abstractmethod
     def first_numbers(self) -> list[int]:
         """Return how many indices of each level the first stage runs."""
-        raise NotImplementedError
 
+    @abstractmethod
     def next_numbers(self, rows: Rows, numbers: list[int]) -> list[int] | None:
         """Return the numbers of the stage after the one that gave these rows; None if there is none."""
-        raise NotImplementedError
 
     @property
     def most(self) -> float:

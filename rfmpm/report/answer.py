@@ -2,9 +2,9 @@
 
 import math
 
+from rfmpm.planning.records import BOUNDED_BY
 from rfmpm.report import words
 from rfmpm.report.budget import FEW
-from rfmpm.report.members import CENSORED_BY
 from rfmpm.report.numbers import Numbers
 
 SIMULATION = "simulation"
@@ -205,7 +205,7 @@ def _fate(numbers: Numbers) -> str:
 
 def _as_bounds(numbers: Numbers) -> str:
     """What becomes of these members where the quantity asked is cut short by that edge."""
-    if "retrogression_censored" not in CENSORED_BY[numbers.asked.quantity]:
+    if "retrogression_censored" not in BOUNDED_BY[numbers.asked.quantity]:
         return ""
     if numbers.asked.limit is None and numbers.asked.quantile is None:
         return " The mean takes what was found and is therefore too low."

@@ -12,7 +12,8 @@ from rfmpm.estimators.curves import Band
 from rfmpm.estimators.discretisation import ASSUMED_ORDER, Discretisation, discretisation
 from rfmpm.estimators.question import Exceedances, Value
 from rfmpm.estimators.rows import Rows
-from rfmpm.report.members import CENSORED_BY, first_index, flagged
+from rfmpm.planning.records import BOUNDED_BY
+from rfmpm.report.members import first_index, flagged
 
 FEWEST_PAIRS = 10  # realisations on two levels; with fewer the error of the cells is not estimated
 RESAMPLES = 200
@@ -50,7 +51,7 @@ class Answers:
         """What estimators see of a quantity; a part of a study counts from its own first realisation."""
         data = self.dataset
         value = data[quantity].values.astype(float)
-        censored = flagged(data, *CENSORED_BY[quantity]) & ~np.isnan(value)
+        censored = flagged(data, *BOUNDED_BY[quantity]) & ~np.isnan(value)
         index = data["realisation"].values - first_index(data)
         return planning.as_rows(data["level"].values, index, value, censored, data["step_count"].values, self.points)
 

@@ -3,15 +3,8 @@
 import numpy as np
 
 from rfmpm import estimators
+from rfmpm.planning.records import BOUNDED_BY
 from rfmpm.study.question_checks import saltelli_size
-
-CENSORED_BY = {  # what marks a value of a quantity as a lower bound
-    "run_out": ("run_out_censored",),
-    "retrogression_distance": ("retrogression_censored",),
-    "influence_distance": ("run_out_censored", "retrogression_censored"),
-    "failure_volume": ("retrogression_censored",),
-    "initial_failure_volume": (),
-}
 
 
 def usable(dataset, study=None):
@@ -66,7 +59,7 @@ def flagged(rows, *names: str) -> np.ndarray:
 
 def censored_members(rows, quantity: str = "run_out") -> np.ndarray:
     """Return where a value of a quantity is only a lower bound, shape (n,); nowhere if the dataset does not say."""
-    return flagged(rows, *CENSORED_BY[quantity])
+    return flagged(rows, *BOUNDED_BY[quantity])
 
 
 def status_names(rows) -> list[str]:

@@ -9,6 +9,7 @@ after Owen (1998), Journal of Complexity 14, 466-489, doi:10.1006/jcom.1998.0487
 with a digital shift, doi:10.1006/jcom.1998.0489.
 """
 
+from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ MOST_SOBOL_DIMENSIONS = 21201
 MOST_SOBOL_POINTS = 1 << 30
 
 
-class _Design:
+class _Design(ABC):
     """Points of one replicate at a time, mapped to standard-normal numbers."""
 
     kind = 0
@@ -63,8 +64,9 @@ class _Design:
         tiny = np.finfo(float).eps
         return ndtri(np.clip(uniform, tiny, 1.0 - tiny))  # a point at 0 or 1 would be infinitely far out
 
+    @abstractmethod
     def _uniform(self, generator: np.random.Generator) -> np.ndarray:
-        raise NotImplementedError
+        """Draw the points of a replicate, each coordinate between 0 and 1, shape (replicate_size, dimension)."""
 
 
 class LatinHypercube(_Design):
