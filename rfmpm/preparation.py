@@ -12,7 +12,7 @@ from rfmpm.mpm import geometry
 from rfmpm.mpm import scene as scenes
 from rfmpm.random_fields import properties as random_properties
 from rfmpm.random_fields.marginals import Marginal
-from rfmpm.stability import Surfaces, prepare_surfaces
+from rfmpm.stability import Side, lay
 from rfmpm.study import StudyError
 from rfmpm.uncertainty import fitted, marginals, values
 
@@ -25,7 +25,7 @@ class Prepared:
     scene: scenes.Scene
     properties: random_properties.Properties
     uncertain: tuple[Marginal, ...] = ()  # distributions of the study's uncertain numbers
-    surfaces: Surfaces | None = None  # for the factor of safety, where the study asks for it
+    sides: tuple[Side, ...] | None = None  # for the factor of safety, where the study asks for it
 
     @property
     def n_variables(self) -> int:
@@ -55,11 +55,16 @@ def prepare(study, store: Path | None = None) -> Prepared:
     scene = scenes.build(study)
     points = np.column_stack(scene.points.position)
     properties = _properties(study, scene.body, points, store)
-    surfaces = None
-    if study.quantities.factor_of_safety:
-        square = scene.cell / sqrt(study.discretisation.points_per_cell)
-        surfaces = prepare_surfaces(scene.body, points, square)
-    return Prepared(study, scene, properties, marginals(study), surfaces)
+    return Prepared(study, scene, properties, marginals(study), _sides(study, scene))
+
+
+def _sides(study, scene: scenes.Scene) -> tuple[Side, ...] | None:
+    if study.quantities.factor_of_safety is None:
+        return None
+    try:
+        return lay(scene, study.discretisation.points_per_cell)
+    except ValueError as error:
+        raise StudyError([f"quantities.factor_of_safety: {error}"]) from None
 
 
 def prepare_fields(study) -> random_properties.Properties:
@@ -114,7 +119,7 @@ def drawn(prepared: Prepared, xi: np.ndarray) -> tuple[Prepared, np.ndarray]:
     scene = scenes.with_parameters(prepared.scene, study)
     points = np.column_stack(scene.points.position)
     properties = _properties(study, scene.body, points, None, prepared.properties)
-    own = Prepared(study, scene, properties, surfaces=prepared.surfaces)
+    own = Prepared(study, scene, properties, sides=prepared.sides)
     return own, fitted(xi[len(prepared.uncertain) :], properties.n_variables)
 
 

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from math import inf, nan, sqrt
+from math import inf, nan
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from rfmpm.observer import Observer
 from rfmpm.outcome import Outcome, measure, verdict
 from rfmpm.preparation import Prepared, draw_xi, drawn, prepare, prepare_fields, realise_fields
 from rfmpm.random_fields import properties as random_properties
-from rfmpm.stability import factor_of_safety
+from rfmpm.stability import METHODS
 from rfmpm.study import StudyError
 from rfmpm.uncertainty import values
 from rfmpm.variables import STATUS, failed_row
@@ -38,7 +38,6 @@ __all__ = [
     "uncertain_values",
 ]
 
-STRENGTH_OF = {"sqrt_j2": 1.0, "sqrt_3j2": 1.0 / sqrt(3.0)}  # undrained shear strength over cohesion
 WORTH_SHARING = 20_000  # points from which threads that share a step gain more than they wait for each other
 
 
@@ -178,12 +177,12 @@ def simulate(
     return _simulate(prepared, draw_xi(prepared, index, level) if xi is None else xi, frames, threads)
 
 
-def _factor(prepared: Prepared, cohesion: np.ndarray) -> dict[str, float]:
-    if prepared.surfaces is None:
+def _factor(prepared: Prepared, fields: dict[str, np.ndarray]) -> dict[str, float]:
+    method = prepared.study.quantities.safety_method
+    if method is None:
         return {}
-    material = prepared.study.material[0]
-    strength = cohesion * STRENGTH_OF[material.strength_convention]
-    return {"factor_of_safety": factor_of_safety(prepared.surfaces, strength, material.unit_weight_kn_m3 * 1e3)}
+    factor = METHODS[method](prepared, fields).factor
+    return {"factor_of_safety": factor if factor < inf else nan}
 
 
 def _simulate(
@@ -210,7 +209,7 @@ def _simulate(
     cohesion = {"cohesion": np.full(final["x"].shape, getattr(scene.material, "cohesion_kpa", nan) * 1e3)}
     final |= cohesion | fields
     quantities = measure(study, scene, own, final, observer, now, status) | uncertain_values(prepared, xi)
-    quantities |= _factor(at_values, final["cohesion"])
+    quantities |= _factor(at_values, fields)
     return Outcome(
         quantities,
         status,

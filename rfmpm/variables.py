@@ -176,8 +176,9 @@ VARIABLES = _table(
         "1",
         "factor of safety",
         {
-            "comment": "Smallest over circular slip surfaces above the base, by equilibrium of moments (phi = 0), with "
-            "the peak cohesion at the material points; known where the simulation failed, too."
+            "comment": "Smallest over slip surfaces by limit equilibrium ({study.quantities.safety_method}), with "
+            "the peak strength at the material points; known where the simulation failed, missing where the method "
+            "has no solution on any surface."
         },
         _has_factor,
     ),

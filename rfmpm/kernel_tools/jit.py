@@ -36,7 +36,7 @@ def cache_folder() -> Path:
     switches = sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_"))
     state = hashlib.sha256(repr((numba.__version__, np.__version__, switches)).encode())
     package = Path(__file__).parents[1]
-    for room in ("kernel_tools", "mpm", "random_fields", "benchmark"):
+    for room in ("kernel_tools", "mpm", "random_fields", "stability", "benchmark"):
         for path in sorted((package / room).rglob("*.py")):
             state.update(path.read_bytes())
     name = state.hexdigest()[:16]

@@ -1,5 +1,28 @@
-"""Factor of safety of a slope: limit equilibrium on the strengths of a realisation."""
+"""Factor of safety of a slope: by limit equilibrium on the strengths of a realisation.
 
-from rfmpm.stability.undrained import Surfaces, factor_of_safety, prepare_surfaces
+A method is a function of the prepared study and the fields of a realisation that returns a record with a `factor`.
+"""
 
-__all__ = ["Surfaces", "factor_of_safety", "prepare_surfaces"]
+from functools import partial
+
+from rfmpm.stability.limit_equilibrium import ASSUMPTIONS, Critical, critical_surface, factor_along
+from rfmpm.stability.methods import Strength, ground_of, lay, limit_equilibrium, section_of, strength_of
+from rfmpm.stability.section import Section, Side, sides_of
+
+METHODS = {name: partial(limit_equilibrium, name) for name in ASSUMPTIONS}
+
+__all__ = [
+    "METHODS",
+    "Critical",
+    "Section",
+    "Side",
+    "Strength",
+    "critical_surface",
+    "factor_along",
+    "ground_of",
+    "lay",
+    "limit_equilibrium",
+    "section_of",
+    "sides_of",
+    "strength_of",
+]

@@ -90,13 +90,13 @@ def _softening_does_not_snap_back(known: Known) -> Iterator[Problem]:
             yield problem(known, f"{material}.residual_plastic_strain", text)
 
 
-def _factor_of_safety_is_of_an_undrained_slope(known: Known) -> Iterator[Problem]:
+def _factor_of_safety_needs_strength(known: Known) -> Iterator[Problem]:
     if not known["quantities.factor_of_safety"]:
         return
-    laws = {known[f"material.{index}.law"] for index in range(len(known["material"]))}
-    if known["geometry.kind"] != "slope" or laws != {"von_mises"}:
-        text = 'needs geometry.kind = "slope" and a material with law = "von_mises": leave it out'
-        yield problem(known, "quantities.factor_of_safety", text)
+    for index in range(len(known["material"])):
+        if known[f"material.{index}.law"] == "elastic":
+            text = f'needs strength, which material.{index} with law = "elastic" has none of: leave it out'
+            yield problem(known, "quantities.factor_of_safety", text)
 
 
 MATERIAL_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
@@ -105,5 +105,5 @@ MATERIAL_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _there_is_some_strength,
     _softening_says_how_fast,
     _softening_does_not_snap_back,
-    _factor_of_safety_is_of_an_undrained_slope,
+    _factor_of_safety_needs_strength,
 ]

@@ -208,6 +208,9 @@ def _absent_if_false(value: object) -> object:
     return None if value is False else value
 
 
+SafetyMethod = Literal["bishop", "spencer", "morgenstern_price", True]
+
+
 class Quantities(Table):
     """[quantities]"""
 
@@ -218,10 +221,15 @@ class Quantities(Table):
     block_plastic_strain: Positive = Field(0.2, description="Plastic strain below which a point belongs to a block [1]")
     block_minimum_area_m2: NotNegative = Field(0.5, description="Area below which a block is not counted [m2]")
     run_out_limit_m: NotNegative = Field(5.0, description="The limit l in P(run-out > l) [m]")
-    factor_of_safety: Annotated[Annotated[bool, Strict()] | None, BeforeValidator(_absent_if_false)] = Field(
-        None, description="Whether rows hold the factor of safety of their field, of an undrained slope"
+    factor_of_safety: Annotated[SafetyMethod | None, BeforeValidator(_absent_if_false)] = Field(
+        None, description="Whether rows hold the factor of safety of their field, and by which method; true: bishop"
     )
     inundation_depth_m: Positive = Field(0.1, description="Depth from which a place counts as inundated [m]")
+
+    @property
+    def safety_method(self) -> str | None:
+        """Name of the method by which the factor of safety of a row is found; None where rows have none."""
+        return "bishop" if self.factor_of_safety is True else self.factor_of_safety
 
 
 class Output(Table):

@@ -142,11 +142,8 @@ def _figure(limit: float) -> str:
 def one_of(options: Sequence, value: Any = None) -> str:
     """List what may be chosen, with a guess at what `value` was meant to be."""
     listed = ("one of " if len(options) > 1 else "") + ", ".join(shown(option) for option in options)
-    meant = (
-        near_miss(value, options)
-        if len(options) > 1 and isinstance(value, str) and isinstance(options[0], str)
-        else None
-    )
+    names = [option for option in options if isinstance(option, str)]
+    meant = near_miss(value, names) if len(options) > 1 and isinstance(value, str) else None
     return f"{listed} (did you mean {shown(meant)}?)" if meant else listed
 
 

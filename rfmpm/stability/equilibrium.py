@@ -1,0 +1,114 @@
+"""Factor of safety of a body of slices: what each method of slices demands of the forces between them.
+
+The factor divides the whole strength along the surface, cohesion and tangent of the angle of friction alike.
+"""
+
+import numpy as np
+
+from rfmpm.kernel_tools import kernel
+
+BISHOP, SPENCER, MORGENSTERN_PRICE = 0, 1, 2  # no shear, shear in proportion, shear in proportion to a half sine
+CLOSE = 1e-6  # two factors that no longer differ, relatively
+ROUNDS = 200
+LEAST_ROTATION = 0.2  # below, Bishop's normal force on a rising base has no meaning (Whitman and Bailey 1967)
+STEEPEST_THRUST = 2.0  # shear over normal force between slices, beyond which a solution is none
+
+
+@kernel
+def factor(slices, count, method):
+    """Factor of safety by a method; infinite where it has no solution or nothing drives."""
+    if method == BISHOP:
+        return bishop(slices, count)
+    return general(slices, count, method)
+
+
+@kernel
+def ordinary(slices, count):
+    """Factor without forces between the slices (Fellenius 1936): where the others start."""
+    resisting, driving = 0.0, 0.0
+    for i in range(count):
+        resisting += slices.cohesion[i] + slices.weight[i] * slices.cosine[i] * slices.friction[i]
+        driving += slices.weight[i] * slices.sine[i]
+    return resisting / driving if driving > 0.0 and resisting > 0.0 else np.inf
+
+
+@kernel
+def bishop(slices, count):
+    """Moments about a circle's centre and vertical forces on each slice (Bishop 1955, Géotechnique 5)."""
+    found = ordinary(slices, count)
+    if found == np.inf:
+        return found
+    driving = 0.0
+    for i in range(count):
+        driving += slices.weight[i] * slices.sine[i]
+    for _ in range(ROUNDS):
+        resisting = 0.0
+        for i in range(count):
+            rotation = slices.cosine[i] + slices.sine[i] * slices.friction[i] / found
+            if slices.sine[i] < 0.0 and slices.friction[i] > 0.0 and rotation < LEAST_ROTATION:
+                return np.inf
+            force = slices.cohesion[i] * slices.cosine[i] + slices.weight[i] * slices.friction[i]
+            resisting += force / rotation
+        better = resisting / driving
+        if abs(better - found) < CLOSE * found:
+            return better
+        if not better > 0.0:
+            return np.inf
+        found = better
+    return np.inf
+
+
+@kernel
+def share_shear(slices, count, method):
+    """Shear between slices over the normal force there and the unknown ratio, on both sides of each slice."""
+    whole, way = 0.0, 0.0
+    for i in range(count):
+        whole += slices.width[i]
+    slices.share[0] = 1.0 if method == SPENCER else 0.0
+    for i in range(count):
+        way += slices.width[i]
+        slices.share[i + 1] = 1.0 if method == SPENCER else np.sin(np.pi * way / whole)
+
+
+@kernel
+def general(slices, count, method):
+    """All forces and moments: Spencer (1967) or Morgenstern and Price (1965) with a half sine.
+
+    Solved as Zhu, Lee, Qian and Chen (2005), Canadian Geotechnical Journal 42, equations 9 to 17: the forces on all
+    slices give the factor at a known ratio of shear to thrust, their moments the ratio at known thrusts.
+    """
+    found = ordinary(slices, count)
+    if found == np.inf:
+        return found
+    share_shear(slices, count, method)
+    ratio = 0.0
+    for _ in range(ROUNDS):
+        resisting, driving, before = 0.0, 0.0, 1.0
+        for i in range(count):
+            s, c, t = slices.sine[i], slices.cosine[i], slices.friction[i]
+            a, b = c * found + s * t, s * found - c * t
+            passed = (a + ratio * slices.share[i] * b) / before
+            before = a + ratio * slices.share[i + 1] * b
+            if not (passed > 0.0 and before > 0.0):
+                return np.inf
+            resisting = passed * resisting + slices.cohesion[i] + slices.weight[i] * c * t
+            driving = passed * driving + slices.weight[i] * s
+            slices.held[i], slices.pushed[i] = resisting / before, driving / before
+        if not (driving > 0.0 and resisting > 0.0):
+            return np.inf
+        better = resisting / driving
+        turning, shear, thrust = 0.0, 0.0, 0.0
+        for i in range(count):
+            after = better * slices.pushed[i] - slices.held[i] if i < count - 1 else 0.0
+            turning += slices.width[i] * (thrust + after) * slices.sine[i] / slices.cosine[i]
+            shear += slices.width[i] * (slices.share[i] * thrust + slices.share[i + 1] * after)
+            thrust = after
+        if shear == 0.0:
+            return np.inf
+        steeper = turning / shear
+        if abs(better - found) < CLOSE * found and abs(steeper - ratio) < 1e-5:
+            return better
+        if abs(steeper) > STEEPEST_THRUST:
+            return np.inf
+        found, ratio = better, steeper
+    return np.inf

@@ -1,0 +1,96 @@
+"""The section of a prepared study, and the strength of its material points in one realisation."""
+
+from collections.abc import Mapping
+from math import radians, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rfmpm.mpm.scene import GRAVITY
+from rfmpm.stability.limit_equilibrium import Critical, critical_surface
+from rfmpm.stability.section import Section, Side, sides_of
+
+STRENGTH_OF = {"sqrt_j2": 1.0, "sqrt_3j2": 1.0 / sqrt(3.0)}  # undrained shear strength over cohesion
+
+
+class Strength(NamedTuple):
+    """What resists and what drives, at the material points; arrays of shape (n,)."""
+
+    cohesion: np.ndarray  # [Pa]
+    friction_angle: np.ndarray  # [rad]
+    unit_weight: np.ndarray  # [N/m3]
+
+
+def section_of(scene: Any, points_per_cell: int) -> Section:
+    """Make the section of a scene; its sides are walls and its floor is firm, so that no surface leaves through them.
+
+    Args:
+        scene: `body`, `points` and `cell` are read.
+        points_per_cell: in a full cell.
+
+    Returns:
+        The section.
+    """
+    outline, points = scene.body.outline, np.column_stack(scene.points.position)
+    ground = ground_of(outline, scene.body.length)
+    return Section(ground, float(outline[:, 1].min()), points, scene.cell / sqrt(points_per_cell))
+
+
+def ground_of(outline: np.ndarray, length: float) -> np.ndarray:
+    """The free surface of a body between walls at 0 and at the length of the domain.
+
+    Args:
+        outline: corners of the body, anticlockwise, shape (k, 2) [m].
+        length: of the domain [m].
+
+    Returns:
+        The surface from left to right, shape (m, 2) [m]; a side that stands free of its wall belongs to it.
+    """
+    x, y = outline.T
+    left, right = x == x.min(), x == x.max()
+    first = np.flatnonzero(left)[(np.argmax if x.min() <= 0.0 else np.argmin)(y[left])]
+    last = np.flatnonzero(right)[(np.argmax if x.max() >= length else np.argmin)(y[right])]
+    backwards = np.roll(outline[::-1], first + 1 - len(outline), axis=0)  # clockwise, from the first corner on
+    return backwards[: (first - last) % len(outline) + 1]
+
+
+def strength_of(prepared: Any, fields: Mapping[str, np.ndarray]) -> Strength:
+    """Peak strength and weight of the material points in one realisation.
+
+    Args:
+        prepared: the prepared study.
+        fields: of the realisation by name, shape (n,) each, in SI units; what is missing is the material's own.
+
+    Returns:
+        The strength. An undrained one is the cohesion, by the material's convention, without friction.
+    """
+    material, points = prepared.scene.material, prepared.scene.points
+    count = len(points.mass)
+    cohesion = fields["cohesion"] if "cohesion" in fields else np.full(count, material.cohesion_kpa * 1e3)
+    if material.law == "von_mises":
+        cohesion, angle = cohesion * STRENGTH_OF[material.strength_convention], np.zeros(count)
+    elif "friction_angle" in fields:
+        angle = fields["friction_angle"]
+    else:
+        angle = np.full(count, radians(material.friction_angle_deg))
+    return Strength(cohesion, angle, points.mass * GRAVITY / points.volume)
+
+
+def lay(scene: Any, points_per_cell: int) -> tuple[Side, ...]:
+    """What limit equilibrium shares between the realisations of a scene."""
+    return sides_of(section_of(scene, points_per_cell))
+
+
+def limit_equilibrium(method: str, prepared: Any, fields: Mapping[str, np.ndarray]) -> Critical:
+    """The slip surface of least factor of safety in one realisation, by a method of slices.
+
+    Args:
+        method: as for `critical_surface`.
+        prepared: the prepared study.
+        fields: as for `strength_of`.
+
+    Returns:
+        The surface and its factor.
+    """
+    sides = prepared.sides or lay(prepared.scene, prepared.study.discretisation.points_per_cell)
+    return critical_surface(sides, *strength_of(prepared, fields), method)
