@@ -9,6 +9,7 @@ from rfmpm.kernel_tools import kernel
 
 BISHOP, SPENCER, MORGENSTERN_PRICE = 0, 1, 2  # no shear, shear in proportion, shear in proportion to a half sine
 CLOSE = 1e-6  # two factors that no longer differ, relatively
+CLOSE_RATIO = 1e-5
 ROUNDS = 200
 LEAST_ROTATION = 0.2  # below, Bishop's normal force on a rising base has no meaning (Whitman and Bailey 1967)
 STEEPEST_THRUST = 2.0  # shear over normal force between slices, beyond which a solution is none
@@ -106,8 +107,9 @@ def general(slices, count, method):
         if shear == 0.0:
             return np.inf
         steeper = turning / shear
-        if abs(better - found) < CLOSE * found and abs(steeper - ratio) < 1e-5:
-            return better
+        if abs(better - found) < CLOSE * found and abs(steeper - ratio) < CLOSE_RATIO:
+            # A ratio below 0 would let a slice pull down the one above it: a root of the equations, no slide.
+            return better if steeper >= 0.0 else np.inf
         if abs(steeper) > STEEPEST_THRUST:
             return np.inf
         found, ratio = better, steeper

@@ -154,9 +154,10 @@ def _best_polygon(
     some, depths = ways[::3], np.array([0.5, 1.0])
     levels = np.linspace(ground.base, ground.y.max(), LEVELS, endpoint=False)
     found = np.empty((len(some), len(some), len(depths), LEVELS))
-    survey_clipped(ground, soil, some, depths, levels, CORNERS, COARSE, assumption, corners, *bench, found)
+    deep = ground._replace(base=ground.base - ways[-1])
+    survey_clipped(ground, deep, soil, some, depths, levels, CORNERS, COARSE, assumption, corners, *bench, found)
     for i, j, k, m in _apart(found, STARTS):
-        set_corners(ground, levels[m], arc(ground, some[i], some[j], depths[k]), corners, CORNERS)
+        set_corners(ground, levels[m], arc(deep, some[i], some[j], depths[k]), corners, CORNERS)
         starts.append((np.column_stack(corners), some[i], some[j]))
     best = NOWHERE
     for start, entry, leaving in starts:

@@ -24,6 +24,8 @@ class Strength(NamedTuple):
 def section_of(scene: Any, points_per_cell: int) -> Section:
     """Make the section of a scene; its sides are walls and its floor is firm, so that no surface leaves through them.
 
+    Sliding on the floor itself is left out: soil that lies on it is taken to hold to it by its own strength.
+
     Args:
         scene: `body`, `points` and `cell` are read.
         points_per_cell: in a full cell.

@@ -70,13 +70,16 @@ def set_corners(ground, level, chain, corners, count):
 
 
 @kernel
-def survey_clipped(ground, soil, ways, depths, levels, count, pieces, method, corners, line, slices, found):
-    """Factor of the arcs between all ways along the ground, cut off below all levels, into found, (n, n, m, l)."""
+def survey_clipped(ground, deep, soil, ways, depths, levels, count, pieces, method, corners, line, slices, found):
+    """Factor of the arcs between all ways along the ground, cut off below all levels, into found, (n, n, m, l).
+
+    The arcs are those of the same ground on a base out of reach, deep.
+    """
     for i in range(len(ways)):
         for j in range(len(ways)):
             for k in range(len(depths)):
                 found[i, j, k, :] = np.inf
-                chain = arc(ground, ways[i], ways[j], depths[k]) if i < j else arc(ground, 0.0, 0.0, 0.0)
+                chain = arc(deep, ways[i], ways[j], depths[k]) if i < j else arc(deep, 0.0, 0.0, 0.0)
                 for m in range(len(levels)):
                     if levels[m] < chain[1] - chain[2] or not set_corners(ground, levels[m], chain, corners, count):
                         continue
@@ -96,7 +99,7 @@ def nudge(ground, corners, last, i, way, ends):
     elif way < 2:
         corners.x[i] += step
     else:
-        corners.y[i] += step
+        corners.y[i] = max(corners.y[i] + step, ground.base)  # so that it may come to lie on the base
 
 
 @kernel
