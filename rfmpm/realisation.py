@@ -16,7 +16,7 @@ from rfmpm.observer import Observer
 from rfmpm.outcome import Outcome, measure, verdict
 from rfmpm.preparation import Prepared, draw_xi, drawn, prepare, prepare_fields, realise_fields
 from rfmpm.random_fields import properties as random_properties
-from rfmpm.stability import METHODS
+from rfmpm.stability import METHODS, Strength, strength_of
 from rfmpm.study import StudyError
 from rfmpm.uncertainty import values
 from rfmpm.variables import STATUS, failed_row
@@ -33,6 +33,7 @@ __all__ = [
     "residual_above_peak",
     "run",
     "simulate",
+    "stability",
     "threads_for",
     "typical_strengths",
     "uncertain_values",
@@ -51,6 +52,7 @@ def compile_kernels(prepared: Prepared, threads: int = 1) -> None:
     advance = SOLVERS[prepared.study.time.scheme]
     own = scenes.release(scene, typical_strengths(prepared))
     advance(start(), 0.0, *scenes.arguments(scene, own, threads))
+    _factor(prepared, typical_strengths(prepared))
 
 
 def threads_for(prepared: Prepared) -> int:
@@ -171,10 +173,48 @@ def simulate(
     if not 1 <= threads <= most:
         raise StudyError([f"threads = {threads}: must be between 1 and {most}, the number of points"])
     if homogeneous:
-        prepared = replace(prepared, properties=random_properties.Properties({}, None), uncertain=())
-        xi = None
+        prepared, xi = _without_chance(prepared), None
     compile_kernels(prepared, threads)
     return _simulate(prepared, draw_xi(prepared, index, level) if xi is None else xi, frames, threads)
+
+
+def stability(
+    prepared: Prepared,
+    method: str,
+    index: int = 0,
+    level: int = 0,
+    homogeneous: bool = False,
+    xi: np.ndarray | None = None,
+) -> tuple[Any, Strength]:
+    """Find the factor of safety of one realisation; nothing is simulated.
+
+    Args:
+        prepared: the prepared study.
+        method: a name of `METHODS`.
+        index: of the realisation.
+        level: of the plan.
+        homogeneous: as for `simulate`.
+        xi: as for `run`.
+
+    Returns:
+        The method's record, with the `factor`, and the strength of the material points.
+
+    Raises:
+        StudyError: if the soil has no strength or the ground is level; if the study is wrong at the values of its
+            uncertain numbers.
+    """
+    if homogeneous:
+        prepared, xi = _without_chance(prepared), None
+    own, of_fields = drawn(prepared, draw_xi(prepared, index, level) if xi is None else xi)
+    fields = random_properties.realise(own.properties, of_fields)
+    try:
+        return METHODS[method](own, fields), strength_of(own, fields)
+    except ValueError as error:
+        raise StudyError([str(error)]) from None
+
+
+def _without_chance(prepared: Prepared) -> Prepared:
+    return replace(prepared, properties=random_properties.Properties({}, None), uncertain=())
 
 
 def _factor(prepared: Prepared, fields: dict[str, np.ndarray]) -> dict[str, float]:

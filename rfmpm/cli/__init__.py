@@ -13,6 +13,7 @@ from rfmpm.cli.merge import merge
 from rfmpm.cli.rerun import rerun
 from rfmpm.cli.run import OutFolder, StudyFile, run
 from rfmpm.cli.sounding import sounding
+from rfmpm.cli.stability import stability
 from rfmpm.cli.status import status
 from rfmpm.cli.sweep import sweep
 from rfmpm.cli.tables import cost_row, outcome_rows, print_table
@@ -33,6 +34,7 @@ app.add_typer(benchmark, name="benchmark")
 app.command("merge")(ends_in_words(merge))
 app.command("rerun")(ends_in_words(rerun))
 app.command("sounding")(ends_in_words(sounding))
+app.command("stability")(ends_in_words(stability))
 app.command("sweep")(ends_in_words(sweep))
 
 Index = Annotated[int, typer.Option("--index", min=0, metavar="I", help="Which realisation.")]

@@ -7,6 +7,7 @@ from rfmpm import realisation
 from rfmpm.mpm.boundary import WALLS
 from rfmpm.mpm.laws import LAWS
 from rfmpm.mpm.shapes import SHAPES
+from rfmpm.stability.limit_equilibrium import ASSUMPTIONS
 from rfmpm.study import Study
 
 FRICTIONAL = ("mohr_coulomb", "drucker_prager")
@@ -22,11 +23,15 @@ TINY_FIELD = {
 
 
 def warmup() -> Iterator[str]:
-    """Compile and cache the kernels of every combination of shape, law and walls.
+    """Compile and cache the kernels of every combination of shape, law and walls, and those of limit equilibrium.
 
     Yields:
         The name of each combination, once it is ready.
     """
+    slope = realisation.prepare(_tiny_study(next(iter(SHAPES)), "mohr_coulomb", "fixed", "roller"))
+    for method in ASSUMPTIONS:
+        realisation.stability(slope, method)
+        yield f"factor of safety, {method}"
     soils = [*LAWS, *(f"{law} with {RANDOM_FRICTION}" for law in FRICTIONAL)]
     combinations = list(product(SHAPES, soils, WALLS, WALLS))
     for number, (shape, soil, base, sides) in enumerate(combinations, start=1):

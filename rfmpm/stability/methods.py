@@ -65,8 +65,13 @@ def strength_of(prepared: Any, fields: Mapping[str, np.ndarray]) -> Strength:
 
     Returns:
         The strength. An undrained one is the cohesion, by the material's convention, without friction.
+
+    Raises:
+        ValueError: the material has none.
     """
     material, points = prepared.scene.material, prepared.scene.points
+    if material.law == "elastic":
+        raise ValueError('material.0.law = "elastic": has no strength, hence no factor of safety')
     count = len(points.mass)
     cohesion = fields["cohesion"] if "cohesion" in fields else np.full(count, material.cohesion_kpa * 1e3)
     if material.law == "von_mises":
