@@ -56,7 +56,7 @@ def prepare(study, store: Path | None = None) -> Prepared:
     points = np.column_stack(scene.points.position)
     properties = _properties(study, scene.body, points, store)
     surfaces = None
-    if study.quantities.factor_of_safety:
+    if study.quantities.factor_of_safety is True:
         square = scene.cell / sqrt(study.discretisation.points_per_cell)
         surfaces = prepare_surfaces(scene.body, points, square)
     return Prepared(study, scene, properties, marginals(study), surfaces)

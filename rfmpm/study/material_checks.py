@@ -91,12 +91,22 @@ def _softening_does_not_snap_back(known: Known) -> Iterator[Problem]:
 
 
 def _factor_of_safety_is_of_an_undrained_slope(known: Known) -> Iterator[Problem]:
-    if not known["quantities.factor_of_safety"]:
+    method = known["quantities.factor_of_safety"]
+    if not method:
         return
     laws = {known[f"material.{index}.law"] for index in range(len(known["material"]))}
-    if known["geometry.kind"] != "slope" or laws != {"von_mises"}:
+    if method == "strength_reduction":
+        if "elastic" in laws:
+            text = 'needs a material that can fail, not law = "elastic": leave it out'
+            yield problem(known, "quantities.factor_of_safety", text)
+    elif known["geometry.kind"] != "slope" or laws != {"von_mises"}:
         text = 'needs geometry.kind = "slope" and a material with law = "von_mises": leave it out'
         yield problem(known, "quantities.factor_of_safety", text)
+
+
+def _k0_is_given_where_it_counts(known: Known) -> Iterator[Problem]:
+    if known["time.k0"] is not None and known["time.initial_stress"] != "k0":
+        yield problem(known, "time.k0", 'needs initial_stress = "k0": leave it out')
 
 
 MATERIAL_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
@@ -106,4 +116,5 @@ MATERIAL_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _softening_says_how_fast,
     _softening_does_not_snap_back,
     _factor_of_safety_is_of_an_undrained_slope,
+    _k0_is_given_where_it_counts,
 ]
