@@ -31,9 +31,9 @@ class Motion:
         self.speeds.append(np.column_stack([c[self.nearest] for c in self.live.velocity]))
         self.next_sample = time + self.interval
 
-    def look(self, now: Progress) -> None:
-        """Add a sample if it is time."""
-        if now.time >= self.next_sample:
+    def look(self, now: Progress, is_over: bool) -> None:
+        """Add a sample if it is time, or the end."""
+        if is_over or now.time >= self.next_sample:
             self.sample(now.time)
 
     def history(self) -> dict[str, np.ndarray]:

@@ -38,7 +38,7 @@ class Observer:
     def look(self, now: Progress, is_over: bool) -> None:
         """See what it is time for; the histories have an entry of the end."""
         if self.motion is not None:
-            self.motion.look(now)
+            self.motion.look(now, is_over)
         if is_over or now.time >= self.next_sample:
             self.sample(now)
 

@@ -30,8 +30,8 @@ def write_simulation_picture(outcome, study, path: Path) -> None:
     with drawing():
         heights = (1 + is_random) * [panel_height(frame) + 0.35] + bool(outcome.motion) * [MOTION_HEIGHT]
         figure = new_figure(WIDTH, sum(heights))
-        parts = figure.subfigures(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
-        panels = [part.subplots() for part in parts[: 1 + is_random]]
+        grid = figure.add_gridspec(len(heights), len(MOTION), height_ratios=heights)
+        panels = [figure.add_subplot(grid[row, :]) for row in range(1 + is_random)]
         top = strain_limit([points["plastic_strain"]])
         panels[0].set_title(_title(outcome))
         strain = points["plastic_strain"]
@@ -43,7 +43,7 @@ def write_simulation_picture(outcome, study, path: Path) -> None:
             panels[1].set_title("Peak cohesion at the start")
             draw_panel(figure, panels[1], start, cohesion, polygon, frame, ends, "cohesion [kPa]", STRENGTH_MAP)
         if outcome.motion:
-            draw_motion(parts[-1].subplots(1, len(MOTION)), outcome.motion)
+            draw_motion([figure.add_subplot(grid[-1, column]) for column in range(len(MOTION))], outcome.motion)
         figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
 
 
