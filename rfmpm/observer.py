@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from rfmpm.motion import Motion
 from rfmpm.mpm.scene import Scene
 from rfmpm.mpm.state import Points, Progress
 from rfmpm.quantities import QUANTITIES, FinalState, front
@@ -11,14 +12,35 @@ SAMPLE_INTERVAL = 0.1  # [s] of model time from one entry of the histories to th
 
 
 class Observer:
-    """Looks at a run from time to time: histories, and snapshots if asked."""
+    """Looks at a run from time to time: histories, and snapshots and the motion of named points if asked."""
 
-    def __init__(self, scene: Scene, study: Study, points: Points, past: tuple | None, frames: int):
+    def __init__(
+        self,
+        scene: Scene,
+        study: Study,
+        points: Points,
+        past: tuple | None,
+        frames: int,
+        motion: Motion | None = None,
+    ):
         self.scene, self.study, self.live, self.past, self.wanted = scene, study, points, past, frames
         names = ("time", "kinetic_energy", "failed_volume") + (("front", "crest") if frames else ())
         self.history = {name: [] for name in names}
         self.frames = [(0.0, self.points())] if frames else []
         self.next_sample = SAMPLE_INTERVAL
+        self.motion = motion
+
+    @property
+    def next_look(self) -> float:
+        """Model time of the next look [s]."""
+        return self.next_sample if self.motion is None else min(self.next_sample, self.motion.next_sample)
+
+    def look(self, now: Progress, is_over: bool) -> None:
+        """See what it is time for; the histories have an entry of the end."""
+        if self.motion is not None:
+            self.motion.look(now, is_over)
+        if is_over or now.time >= self.next_sample:
+            self.sample(now)
 
     def points(self) -> dict[str, np.ndarray]:
         """Copy the points' state, by the names of the table of variables."""

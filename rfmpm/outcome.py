@@ -1,6 +1,6 @@
 """What a run that has ended came to: its verdict in words, and its quantities."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import nan
 from typing import Any
 
@@ -26,6 +26,7 @@ class Outcome:
     points: dict[str, np.ndarray]
     history: dict[str, np.ndarray]
     frames: list[tuple[float, dict[str, np.ndarray]]]
+    motion: dict[str, np.ndarray] = field(default_factory=dict)  # of the named points, as `Motion.history` gives it
 
 
 def verdict(now: Progress, study, scene: scenes.Scene, points: dict[str, np.ndarray]) -> tuple[str, str]:

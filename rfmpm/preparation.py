@@ -12,7 +12,7 @@ from rfmpm.mpm import geometry
 from rfmpm.mpm import scene as scenes
 from rfmpm.random_fields import properties as random_properties
 from rfmpm.random_fields.marginals import Marginal
-from rfmpm.stability import Side, lay
+from rfmpm.stability import ASSUMPTIONS, Side, lay
 from rfmpm.study import StudyError
 from rfmpm.uncertainty import fitted, marginals, values
 
@@ -59,7 +59,7 @@ def prepare(study, store: Path | None = None) -> Prepared:
 
 
 def _sides(study, scene: scenes.Scene) -> tuple[Side, ...] | None:
-    if study.quantities.factor_of_safety is None:
+    if study.quantities.safety_method not in ASSUMPTIONS:
         return None
     try:
         return lay(scene, study.discretisation.points_per_cell)

@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from rfmpm.initial_state import begin, refuse_large
 from rfmpm.kernel_tools import start_threads
+from rfmpm.motion import Motion
 from rfmpm.mpm import scene as scenes
 from rfmpm.mpm.solvers import SOLVERS
 from rfmpm.mpm.state import RUNNING, start
@@ -27,6 +29,7 @@ __all__ = [
     "compile_kernels",
     "draw_xi",
     "drawn",
+    "initial_balance",
     "prepare",
     "prepare_fields",
     "realise_fields",
@@ -112,7 +115,7 @@ def run(
 
     xi = draw_xi(prepared, index, level) if xi is None else xi
     try:
-        outcome = _simulate(prepared, xi, frames=0, threads=1, look=look)
+        outcome = _simulate(prepared, xi, frames=0, threads=1, look=look, keep_motion=False)
     except OutOfTime:
         reason = f"took longer than failures.realisation_time_limit_s = {limit:g} s"
         row = failed_row(prepared.study, index, "timeout", reason, level, time.perf_counter() - started)
@@ -178,6 +181,26 @@ def simulate(
     return _simulate(prepared, draw_xi(prepared, index, level) if xi is None else xi, frames, threads)
 
 
+def initial_balance(prepared: Prepared) -> float:
+    """What is out of balance at the start, with typical strengths.
+
+    Args:
+        prepared: the prepared study.
+
+    Returns:
+        Unbalanced over gravity's forces on the nodes [-].
+
+    Raises:
+        StudyError: if it is large, unless strength varies, which would be no fault of the study's.
+    """
+    scene = prepared.scene
+    own = scenes.release(scene, typical_strengths(prepared))
+    _, _, ratio = begin(prepared.study, scene, own, start(), threads=1)
+    if not prepared.n_variables:
+        refuse_large(prepared.study, ratio)
+    return ratio
+
+
 def stability(
     prepared: Prepared,
     method: str,
@@ -231,25 +254,31 @@ def _simulate(
     frames: int,
     threads: int,
     look: Callable[[], None] = lambda: None,
+    keep_motion: bool = True,
 ) -> Outcome:
     started = time.perf_counter()
     at_values, of_fields = drawn(prepared, xi)
     study, scene = at_values.study, at_values.scene
     fields = random_properties.realise(at_values.properties, of_fields)
     own, now = scenes.release(scene, fields), start()
+    balance = {}
+    if study.time.initial_stress != "elastic":
+        scene, now, balance["out_of_balance"] = begin(study, scene, own, now, threads)
+        if not prepared.n_variables:
+            refuse_large(study, balance["out_of_balance"])
     advance, arguments = SOLVERS[study.time.scheme], scenes.arguments(scene, own, threads)
-    observer = Observer(scene, study, own.points, own.history, frames)
-    while now.status == RUNNING and now.time < study.time.end_s:
+    motion = Motion(study, own.points) if keep_motion and study.history else None
+    observer, end = Observer(scene, study, own.points, own.history, frames, motion), study.time.end_s
+    while now.status == RUNNING and now.time < end:
         look()
-        until = min(observer.next_sample, study.time.end_s)
-        now = advance(now, until, *arguments)
-        observer.sample(now)
+        now = advance(now, min(observer.next_look, end), *arguments)
+        observer.look(now, is_over=now.status != RUNNING or now.time >= end)
     final = observer.points()
     status, reason = verdict(now, study, scene, final)
     cohesion = {"cohesion": np.full(final["x"].shape, getattr(scene.material, "cohesion_kpa", nan) * 1e3)}
     final |= cohesion | fields
     quantities = measure(study, scene, own, final, observer, now, status) | uncertain_values(prepared, xi)
-    quantities |= _factor(at_values, fields)
+    quantities |= _factor(at_values, fields) | balance
     return Outcome(
         quantities,
         status,
@@ -259,4 +288,5 @@ def _simulate(
         final,
         {name: np.array(values) for name, values in observer.history.items()},
         observer.kept_frames(),
+        motion.history() if motion else {},
     )

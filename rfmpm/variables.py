@@ -33,6 +33,10 @@ def _has_factor(study) -> bool:
     return bool(study.quantities.factor_of_safety)
 
 
+def _starts_otherwise(study) -> bool:
+    return study.time.initial_stress != "elastic"
+
+
 def _is_uncertain(study) -> bool:
     return study.uncertain is not None
 
@@ -170,15 +174,27 @@ VARIABLES = _table(
         "dissipation, relative to the work of gravity.",
     ),
     Variable(
+        "out_of_balance",
+        ("realisation",),
+        "float64",
+        "1",
+        "initial forces out of balance",
+        {
+            "comment": "Norm of the unbalanced forces on the free nodes before the first step, over that of gravity's; "
+            "known where the simulation failed, too."
+        },
+        _starts_otherwise,
+    ),
+    Variable(
         "factor_of_safety",
         ("realisation",),
         "float64",
         "1",
         "factor of safety",
         {
-            "comment": "Smallest over slip surfaces by limit equilibrium ({study.quantities.safety_method}), with "
-            "the peak strength at the material points; known where the simulation failed, missing where the method "
-            "has no solution on any surface."
+            "comment": "With the peak strength at the material points, by {study.quantities.safety_method}: limit "
+            "equilibrium gives the smallest over slip surfaces, strength_reduction the number by which cohesion and "
+            "tan(phi) can be divided; known where the simulation failed, missing where the method has no solution."
         },
         _has_factor,
     ),
@@ -298,6 +314,25 @@ HISTORY_VARIABLES = _table(
     _point("front", "m", "horizontal position of the front of the failed mass", ("history_time",)),
     _point("crest", "m", "horizontal position of the crest edge", ("history_time",)),
     _point("failed_volume", "m3 m-1", "initial volume of the failed set per metre of width", ("history_time",)),
+)
+
+
+_MEAN = "Mean since the sample before: the difference of velocities over that time; 0 at the start."
+
+
+def _motion(name, unit, long_name, dims=("motion_time", "history_point"), **attributes) -> Variable:
+    return _point(name, unit, long_name, dims, **attributes)
+
+
+MOTION_VARIABLES = _table(
+    _motion("history_x", "m", "horizontal position of the point at the start", ("history_point",)),
+    _motion("history_y", "m", "height of the point above the base at the start", ("history_point",)),
+    _motion("history_displacement_x", "m", "horizontal displacement of the point"),
+    _motion("history_displacement_y", "m", "vertical displacement of the point", comment="Positive upwards."),
+    _motion("history_velocity_x", "m s-1", "horizontal velocity of the point"),
+    _motion("history_velocity_y", "m s-1", "vertical velocity of the point", comment="Positive upwards."),
+    _motion("history_acceleration_x", "m s-2", "horizontal acceleration of the point", comment=_MEAN),
+    _motion("history_acceleration_y", "m s-2", "vertical acceleration of the point", comment=f"Upwards. {_MEAN}"),
 )
 
 

@@ -177,6 +177,8 @@ def check(
         settings = load_study(study)
         if fields_need_making(settings):
             _make_fields(settings, study)
+        if settings.time.initial_stress != "elastic":
+            _say_balance(settings, study)
         typer.echo(f"{study}: nothing is wrong", err=schema)
 
 
@@ -188,6 +190,17 @@ def _make_fields(settings: Any, source: Path) -> None:
         realisation.prepare_fields(with_fastest_methods(settings))
     except StudyError as error:
         raise StudyError(error.problems, str(source)) from None
+
+
+def _say_balance(settings: Any, source: Path) -> None:
+    from rfmpm import realisation
+    from rfmpm.study import StudyError
+
+    try:
+        ratio = realisation.initial_balance(realisation.prepare(settings))
+    except StudyError as error:
+        raise StudyError(error.problems, str(source)) from None
+    typer.echo(f"forces at the start out of balance by {ratio:.1e} of gravity's")
 
 
 @command

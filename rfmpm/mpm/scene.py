@@ -12,7 +12,7 @@ from rfmpm.mpm.boundary import WALLS, Walls
 from rfmpm.mpm.cells import Cells, make_cells
 from rfmpm.mpm.energy import elastic_energy
 from rfmpm.mpm.geometry import Body, body, fill
-from rfmpm.mpm.initial_stress import elastic_gravity_stress
+from rfmpm.mpm.initial_stress import INITIAL_STRESSES, Unreleased
 from rfmpm.mpm.laws import LAWS
 from rfmpm.mpm.laws.elastic import lame_constants
 from rfmpm.mpm.laws.history import NonlocalHistory
@@ -52,8 +52,9 @@ def build(study) -> Scene:
         study: the study.
 
     Returns:
-        The scene, its points under elastic gravity stresses. Where these lie beyond yield, the law takes them back to
-        it when the run fills its grid, before the first step: what they exceed it by then sets the body in motion.
+        The scene, its points under the stresses that `time.initial_stress` names. Where these lie beyond yield, the law
+        takes them back to it when the run fills its grid, before the first step: what they exceed it by then sets the
+        body in motion.
     """
     cell = study.discretisation.cell_m
     shape = body(study)
@@ -78,7 +79,7 @@ def with_parameters(scene: Scene, study) -> Scene:
     """
     before, after = scene.material, study.material[0]
     stress = None
-    if before.poissons_ratio == after.poissons_ratio:
+    if study.time.initial_stress == "elastic" and before.poissons_ratio == after.poissons_ratio:
         factor = after.unit_weight_kn_m3 / before.unit_weight_kn_m3
         stress = Tensor(*(factor * component for component in scene.points.stress))
     position = np.column_stack(scene.points.position)
@@ -94,7 +95,8 @@ def _scene(study, shape: Body, axes: Axes, position: np.ndarray, volume: np.ndar
     length = getattr(material, "softening_length_m", None)
     averaged = study.discretisation.volumetric_strain == "cell_mean"
     if stress is None:
-        stress = elastic_gravity_stress(position, mass, volume, axes, walls, lame, shear, GRAVITY, averaged)
+        still = Unreleased(shape.outline, position, mass, volume, axes, walls, lame, shear, GRAVITY, averaged)
+        stress = INITIAL_STRESSES[study.time.initial_stress](still, study)
     still = Vector(np.zeros(len(volume)), np.zeros(len(volume)))
     points = Points(Vector(*position.T.copy()), still, mass, volume, stress)
     controls = Controls(

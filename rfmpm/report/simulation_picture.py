@@ -10,10 +10,12 @@ from rfmpm.report.slope_figures import WIDTH, draw_panel, panel_height, strain_l
 from rfmpm.report.style import DOTS_PER_INCH, STRENGTH_MAP, drawing, new_figure
 
 FRAMES_PER_SECOND = 10
+MOTION = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s²"}
+MOTION_HEIGHT = 2.4  # inches
 
 
 def write_simulation_picture(outcome, study, path: Path) -> None:
-    """Picture the end of a simulation: plastic strain and, where it varies, the peak cohesion before the slide.
+    """Picture the end of a simulation: plastic strain, the peak cohesion at the start where it varies, named points.
 
     Args:
         outcome: the Outcome of a simulation.
@@ -26,8 +28,10 @@ def write_simulation_picture(outcome, study, path: Path) -> None:
     frame = view([polygon[:, 0], points["x"]], [polygon[:, 1], points["y"]])
     is_random = "cohesion" in points and points["cohesion"].size > 0 and np.ptp(points["cohesion"]) > 0.0
     with drawing():
-        figure = new_figure(WIDTH, (1 + is_random) * (panel_height(frame) + 0.35))
-        panels = figure.subplots(1 + is_random, 1, squeeze=False)[:, 0]
+        heights = (1 + is_random) * [panel_height(frame) + 0.35] + bool(outcome.motion) * [MOTION_HEIGHT]
+        figure = new_figure(WIDTH, sum(heights))
+        grid = figure.add_gridspec(len(heights), len(MOTION), height_ratios=heights)
+        panels = [figure.add_subplot(grid[row, :]) for row in range(1 + is_random)]
         top = strain_limit([points["plastic_strain"]])
         panels[0].set_title(_title(outcome))
         strain = points["plastic_strain"]
@@ -38,7 +42,25 @@ def write_simulation_picture(outcome, study, path: Path) -> None:
             ends = tuple(np.percentile(cohesion, [1.0, 99.0]))
             panels[1].set_title("Peak cohesion at the start")
             draw_panel(figure, panels[1], start, cohesion, polygon, frame, ends, "cohesion [kPa]", STRENGTH_MAP)
+        if outcome.motion:
+            draw_motion([figure.add_subplot(grid[-1, column]) for column in range(len(MOTION))], outcome.motion)
         figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
+
+
+def draw_motion(panels, motion) -> None:
+    """Draw the motion of named points over time: size of displacement, velocity and acceleration.
+
+    Args:
+        panels: one for each of `MOTION`.
+        motion: as an Outcome holds it.
+    """
+    for axes, (name, unit) in zip(panels, MOTION.items(), strict=True):
+        size = np.hypot(motion[f"history_{name}_x"], motion[f"history_{name}_y"])
+        for point, values in zip(motion["history_point"], size.T, strict=True):
+            axes.plot(motion["motion_time"], values, label=point, linewidth=1.1)
+        axes.set_title(f"{name} [{unit}]")
+        axes.set_xlabel("time [s]")
+    panels[0].legend()
 
 
 def write_animation(outcome, study, path: Path) -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 ENSEMBLE_FILE = "ensemble.nc"
 _VALUES_AT_ONCE = 2**20  # that a large variable is read and hashed by
 _MISSING_INTEGER = -1  # on disk; NaN in memory
-_NEVER_MISSING = ("status", "realisation", "level", "x", "time", "history_time", *PROVENANCE)
+_NEVER_MISSING = ("status", "realisation", "level", "x", "time", "history_time", "motion_time", *PROVENANCE)
 
 
 def dataset(rows: Sequence[Mapping[str, Any]], study, attributes: Mapping[str, Any] | None = None) -> "xr.Dataset":

@@ -6,7 +6,7 @@ import numpy as np
 
 from rfmpm.results.netcdf import labelled_array, write_dataset
 from rfmpm.results.provenance import global_attributes
-from rfmpm.variables import HISTORY_VARIABLES, POINT_VARIABLES, Variable
+from rfmpm.variables import HISTORY_VARIABLES, MOTION_VARIABLES, POINT_VARIABLES, Variable
 
 # The standard name "time" and the axis T are for times of a calendar ("seconds since ..."), which a model has not.
 _TIME = {"comment": "Model time since release."}
@@ -14,6 +14,8 @@ _TIME = {"comment": "Model time since release."}
 
 def write_simulation(path: Path, outcome, study) -> None:
     """Write simulation.nc: points over `time`, histories over `time` or, where denser, over `history_time`.
+
+    The motion of the study's named points is over `motion_time` and `history_point`.
 
     Without frames the final state is the one entry of `time`.
 
@@ -43,6 +45,13 @@ def write_simulation(path: Path, outcome, study) -> None:
         if name in history:
             labelled = labelled_array(variable, history[name], study)
             data[name] = labelled if not shared else xr.Variable(("time",), labelled.values, labelled.attrs)
+    if outcome.motion:
+        coordinates["motion_time"] = _time("motion_time", outcome.motion["motion_time"], study)
+        coordinates["history_point"] = xr.Variable(
+            ("history_point",), outcome.motion["history_point"], {"long_name": "name of a point in the study"}
+        )
+        for name, variable in MOTION_VARIABLES.items():
+            data[name] = labelled_array(variable, outcome.motion[name], study)
     attributes = global_attributes(study) | {
         "comment": "Histories are given over time."
         if shared

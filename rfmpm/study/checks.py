@@ -101,7 +101,15 @@ def _names_are_unique(known: Known) -> Iterator[Problem]:
             yield problem(known, f"material.{last}.name", f"is the name of {count} materials; names must differ")
 
 
+def _histories_have_names_of_their_own(known: Known) -> Iterator[Problem]:
+    names = [known[f"history.{index}.name"] for index in range(len(known["history"] or ()))]
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            yield problem(known, f"history.{index}.name", "is the name of another history too; names must differ")
+
+
 CHECKS: list[Check] = [
+    _histories_have_names_of_their_own,
     *SIZE_CHECKS,
     _residual_is_below_the_peak,
     _softening_does_not_snap_back,

@@ -99,6 +99,11 @@ def _factor_of_safety_needs_strength(known: Known) -> Iterator[Problem]:
             yield problem(known, "quantities.factor_of_safety", text)
 
 
+def _k0_is_given_where_it_counts(known: Known) -> Iterator[Problem]:
+    if known["time.k0"] is not None and known["time.initial_stress"] != "k0":
+        yield problem(known, "time.k0", 'needs initial_stress = "k0": leave it out')
+
+
 MATERIAL_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _residuals_are_below_the_peaks,
     _dilation_is_below_friction,
@@ -106,4 +111,5 @@ MATERIAL_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _softening_says_how_fast,
     _softening_does_not_snap_back,
     _factor_of_safety_needs_strength,
+    _k0_is_given_where_it_counts,
 ]

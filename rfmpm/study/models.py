@@ -196,11 +196,28 @@ class Time(Table):
     """[time]"""
 
     end_s: Positive = Field(description="Model time at which a realisation ends at the latest [s]")
-    initial_stress: Literal["elastic"] = Field("elastic", description="How the initial stresses are found")
+    initial_stress: Literal["elastic", "k0", "gravity_ramp"] = Field(
+        "elastic",
+        description="How the initial stresses are found. elastic: one static solve. k0: level ground at rest. "
+        "gravity_ramp: gravity is raised slowly, with the soil's peak strength",
+    )
+    k0: Positive | None = Field(
+        None,
+        description="Horizontal over vertical stress, for initial_stress = k0 [1]. "
+        "Default: 1 - sin(friction angle), or nu/(1-nu) without friction",
+    )
     scheme: Literal["explicit"] = Field("explicit", description="Time integration")
     step_fraction: Positive = Field(
         0.8, le=1, description="Time step over the critical time step, cell over wave and point speed [1]"
     )
+
+
+class HistoryPoint(Table):
+    """[[history]] of the material point that lies nearest to a place at the start"""
+
+    name: Text = Field(description="Name of the point in results")
+    x_m: NotNegative = Field(description="Horizontal position [m]")
+    y_m: NotNegative = Field(description="Height above the base [m]")
 
 
 def _absent_if_false(value: object) -> object:
@@ -208,7 +225,7 @@ def _absent_if_false(value: object) -> object:
     return None if value is False else value
 
 
-SafetyMethod = Literal["bishop", "spencer", "morgenstern_price", True]
+SafetyMethod = Literal["bishop", "spencer", "morgenstern_price", "strength_reduction", True]
 
 
 class Quantities(Table):
@@ -238,6 +255,9 @@ class Output(Table):
     directory: Text = Field(description="Folder of the results")
     surface_bin_m: Length | None = Field(
         None, description="Bin width of the final ground surface [m]; left out: no surface is kept"
+    )
+    history_interval_s: Positive | None = Field(
+        None, description="Model time from one sample of the [[history]] points to the next [s]. Default: 0.02"
     )
 
 

@@ -58,6 +58,21 @@ def _body(known: Known) -> tuple[float, float, float]:
     return (crest + 0.5 * face) * height, crest + face, height
 
 
+def _histories_are_of_the_body(known: Known) -> Iterator[Problem]:
+    """A place may lie outside by a cell: what counts is the nearest material point."""
+    _, length, height = _body(known)
+    cell = known["discretisation.cell_m"]
+    face = length - known["geometry.crest_m"] if known["geometry.kind"] == "slope" else 0.0
+    for index in range(len(known["history"] or ())):
+        x, y = known[f"history.{index}.x_m"], known[f"history.{index}.y_m"]
+        ground = height if x <= length - face else height * (length - x) / face if face > 0.0 else 0.0
+        if x > length + cell or y > max(ground, 0.0) + cell:
+            text = f"there is no soil within a cell of x_m = {x:.10g}, y_m = {y:.10g}"
+            if x <= length:
+                text += f"; the ground is at y_m = {ground:.6g} there"
+            yield problem(known, f"history.{index}.y_m", text)
+
+
 def _points_are_affordable(known: Known) -> Iterator[Problem]:
     cell, per_cell = known["discretisation.cell_m"], known["discretisation.points_per_cell"]
     count = _body(known)[0] / cell**2 * per_cell
@@ -169,6 +184,7 @@ SIZE_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _points_are_affordable,
     _cells_are_affordable,
     _surface_bins_are_affordable,
+    _histories_are_of_the_body,
     _stiffness_carries_the_weight,
     _steps_are_affordable,
 ]

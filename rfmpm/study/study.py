@@ -24,6 +24,7 @@ from rfmpm.study.models import (
     Failures,
     FrictionalMaterial,
     Geometry,
+    HistoryPoint,
     Material,
     Output,
     Quantities,
@@ -43,6 +44,8 @@ NOT_PHYSICS = (
     ("quantities", "run_out_limit_m"),
     ("quantities", "inundation_depth_m"),
     ("failures",),
+    ("output", "history_interval_s"),
+    ("history",),
 )
 
 
@@ -73,6 +76,9 @@ class Study(Table):
     estimator: Estimation | None = Field(None, description="How a campaign answers; left out: plain Monte Carlo")
     time: Time
     quantities: Quantities = Quantities()
+    history: tuple[HistoryPoint, ...] | None = Field(
+        None, description="Points whose motion a single simulation keeps; left out: none"
+    )
     output: Output
     failures: Failures = Failures()
 

@@ -18,12 +18,13 @@ FLOORS = {
     5.2: ("planning",),
     5: ("realisation", "results", "field_influence"),
     4.7: ("outcome", "preparation"),
-    4.5: ("observer",),
+    4.5: ("observer", "initial_state"),
+    4.4: ("motion",),
     4.2: ("sampling",),  # chains follow the plan of their estimator
     4: ("quantities", "estimators", "stability"),
     3.5: ("random_fields.properties", "random_fields.comparison", "random_fields.principal_components"),
     3.2: ("uncertainty",),
-    3: ("mpm.scene", "mpm.solvers", "random_fields.field", "random_fields.statistics"),
+    3: ("mpm.scene", "mpm.solvers", "mpm.equilibrium", "random_fields.field", "random_fields.statistics"),
     2.5: (
         *("mpm.geometry", "mpm.energy", "mpm.initial_stress"),
         *("random_fields.store", "random_fields.trend", "random_fields.law"),

@@ -37,6 +37,9 @@ def tables():
     return tomllib.loads(RANDOM.read_text())
 
 
+PLACE = {"name": "crown", "x_m": 9.0, "y_m": 5.0}
+
+
 @pytest.fixture
 def study():
     return load_study(RANDOM)
@@ -107,7 +110,9 @@ def test_study_is_immutable_and_travels_between_processes(study):
     [
         (".".join(path), value)
         for path, value in zip(
-            NOT_PHYSICS, ["other", 7, None, "elsewhere", 0.5, 2.0, 0.3, {"action": "abort"}], strict=True
+            NOT_PHYSICS,
+            ["other", 7, None, "elsewhere", 0.5, 2.0, 0.3, {"action": "abort"}, 0.01, [PLACE]],
+            strict=True,
         )
     ],
 )

@@ -33,6 +33,10 @@ class Elastic(NamedTuple):
         """Hooke's law in rate form."""
         return hooke(self.lame, self.shear, stress, strain_increment), history
 
+    def quasi_static(self, stiffer, factor):
+        """The law of slow loading: stiffness times `stiffer`; there is no strength to divide by `factor`."""
+        return Elastic(self.lame * stiffer, self.shear * stiffer)
+
     @classmethod
     def build(cls, material, cell, count, strengths):
         """Make the law and its history from a study's material; arguments as for `VonMises.build`."""

@@ -105,6 +105,22 @@ class FrictionalLaw(NamedTuple):
     tension: float  # cut-off, in the law's own measure of tension; infinite for none [Pa]
     softening: float  # one over the plastic strain at which the residual is reached; 0 for no softening [-]
 
+    def quasi_static(self, stiffer, factor):
+        """As for `VonMises`; cohesion and the tangents of both angles are what is divided by `factor`."""
+        peak = self.peak / factor
+        friction, dilation = (
+            Angle(*2 * (np.arctan(np.tan(angle.peak) / factor),)) for angle in (self.friction, self.dilation)
+        )
+        return self._replace(
+            lame=self.lame * stiffer,
+            shear=self.shear * stiffer,
+            peak=peak,
+            residual=peak,
+            friction=friction,
+            dilation=dilation,
+            softening=0.0,
+        )
+
     @classmethod
     def build(cls, material, cell, count, strengths):
         """Make the law and its history from a study's material; arguments and results as for `VonMises.build`.

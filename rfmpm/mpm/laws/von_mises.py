@@ -47,6 +47,11 @@ class VonMises(NamedTuple):
         relaxed = Tensor(mean + scale * sxx, mean + scale * syy, mean + scale * szz, scale * trial.xy)
         return relaxed, grown(history, g * PER_STRAIN)
 
+    def quasi_static(self, stiffer, factor):
+        """The law of slow loading: stiffness times `stiffer`, peak strength over `factor`, no softening, no rate."""
+        peak = self.peak / factor
+        return VonMises(self.lame * stiffer, self.shear * stiffer, 0.0, peak, peak, 0.0)
+
     @classmethod
     def build(cls, material, cell, count, strengths):
         """Make the law and its history from a study's material.

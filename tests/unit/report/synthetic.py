@@ -125,4 +125,5 @@ def make_outcome(study, run_out=6.0, status="ok", reason="", frames=0) -> Simple
         reason=reason,
         points=make_points(study, run_out),
         frames=steps,
+        motion={},
     )

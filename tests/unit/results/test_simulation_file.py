@@ -19,7 +19,7 @@ def points(shift):
 
 def outcome(frame_times, history_times):
     return SimpleNamespace(
-        points=points(9.0), frames=[(time, points(time)) for time in frame_times], status="ok", reason="",
+        points=points(9.0), frames=[(time, points(time)) for time in frame_times], motion={}, status="ok", reason="",
         step_count=7, wall_time=0.25,
         history={"time": history_times}
         | {name: np.arange(len(history_times)) + place for place, name in enumerate(HISTORY_VARIABLES)},

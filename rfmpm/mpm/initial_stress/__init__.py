@@ -1,0 +1,52 @@
+"""Stresses of a body before it is released, by name.
+
+What a scene cannot know, because it depends on the strength of a realisation, is found at release: `SETTLES` names the
+ways that start from these stresses and go on by damped motion (`rfmpm.mpm.equilibrium`).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rfmpm.kernel_tools import Tensor
+from rfmpm.mpm.boundary import Walls
+from rfmpm.mpm.initial_stress.at_rest import k0_stress, lateral_coefficient, no_stress
+from rfmpm.mpm.initial_stress.elastic import elastic_gravity_stress, interpolation
+from rfmpm.mpm.state import Axes
+
+
+class Unreleased(NamedTuple):
+    """A body before it has stresses."""
+
+    outline: np.ndarray  # (k, 2) corners [m]
+    position: np.ndarray  # (n, 2) [m]
+    mass: np.ndarray  # (n,) [kg/m]
+    volume: np.ndarray  # (n,) [m3/m]
+    axes: Axes
+    walls: Walls
+    lame: float  # [Pa]
+    shear: float  # [Pa]
+    gravity: float  # [m/s2]
+    cell_means: bool  # volumetric strain and pressure are means over the points of a cell
+
+
+def elastic(body: Unreleased, study) -> Tensor:
+    """One elastic static solve on the grid."""
+    return elastic_gravity_stress(*body[1:])
+
+
+def k0(body: Unreleased, study) -> Tensor:
+    """Level ground: weight above, and a share of it sideways."""
+    unit_weight = body.gravity * body.mass / body.volume
+    return k0_stress(body.position, body.outline, unit_weight, lateral_coefficient(study))
+
+
+def gravity_ramp(body: Unreleased, study) -> Tensor:
+    """None yet: gravity is raised at release."""
+    return no_stress(len(body.mass))
+
+
+INITIAL_STRESSES = {"elastic": elastic, "k0": k0, "gravity_ramp": gravity_ramp}
+SETTLES = frozenset({"gravity_ramp"})
+
+__all__ = ["INITIAL_STRESSES", "SETTLES", "Unreleased", "elastic_gravity_stress", "interpolation", "k0_stress"]
