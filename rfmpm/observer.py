@@ -4,6 +4,7 @@ import numpy as np
 
 from rfmpm.motion import Motion
 from rfmpm.mpm.scene import Scene
+from rfmpm.mpm.soils import plastic_strain_of
 from rfmpm.mpm.state import Points, Progress
 from rfmpm.quantities import QUANTITIES, FinalState, front
 from rfmpm.study import Study
@@ -45,7 +46,7 @@ class Observer:
     def points(self) -> dict[str, np.ndarray]:
         """Copy the points' state, by the names of the table of variables."""
         live, first = self.live, self.scene.points
-        strain = np.zeros_like(live.mass) if self.past is None else self.past.plastic_strain
+        strain = plastic_strain_of(self.past, len(live.mass))
         state = {
             "x": live.position.x,
             "y": live.position.y,
@@ -106,6 +107,7 @@ def final_state(scene: Scene, study: Study, points: dict[str, np.ndarray]) -> Fi
         toe=body.toe,
         crest_edge=body.crest_edge,
         crest_height=body.height,
+        ground=body.ground,
         length=body.length,
         displacement_threshold=asked.displacement_threshold_m,
         front_quantile=asked.front_quantile,

@@ -54,7 +54,7 @@ def prepare(study, store: Path | None = None) -> Prepared:
     """
     scene = scenes.build(study)
     points = np.column_stack(scene.points.position)
-    properties = _properties(study, scene.body, points, store)
+    properties = _properties(study, scene.body, points, scene.soils.counts, store)
     return Prepared(study, scene, properties, marginals(study), _sides(study, scene))
 
 
@@ -74,19 +74,20 @@ def prepare_fields(study) -> random_properties.Properties:
         StudyError: as for `prepare`.
     """
     shape = geometry.body(study)
-    points, _ = geometry.fill(shape.outline, study.discretisation.cell_m, study.discretisation.points_per_cell)
-    return _properties(study, shape, points, None)
+    filling, _ = geometry.fill_body(study, shape)
+    return _properties(study, shape, filling.position, filling.counts, None)
 
 
 def _properties(
     study,
     shape: geometry.Body,
     points: np.ndarray,
+    counts: tuple[int, ...],
     store: Path | None,
     known: random_properties.Properties | None = None,
 ) -> random_properties.Properties:
     try:
-        return random_properties.prepare(study, _site(study, shape, points), store, known)
+        return random_properties.prepare(study, _site(study, shape, points, counts), store, known)
     except ValueError as error:
         raise StudyError([str(error)]) from None
 
@@ -118,7 +119,7 @@ def drawn(prepared: Prepared, xi: np.ndarray) -> tuple[Prepared, np.ndarray]:
     study = prepared.study.with_values(values(prepared.uncertain, xi))
     scene = scenes.with_parameters(prepared.scene, study)
     points = np.column_stack(scene.points.position)
-    properties = _properties(study, scene.body, points, None, prepared.properties)
+    properties = _properties(study, scene.body, points, scene.soils.counts, None, prepared.properties)
     own = Prepared(study, scene, properties, sides=prepared.sides)
     return own, fitted(xi[len(prepared.uncertain) :], properties.n_variables)
 
@@ -144,14 +145,8 @@ def realise_fields(study, index: int, level: int = 0, xi: np.ndarray | None = No
     return random_properties.realise(own.properties, of_fields)
 
 
-def _site(study, body: geometry.Body, points: np.ndarray) -> random_properties.Site:
-    """Where the fields of a study are needed; a slope is at least four cells high, so no square reaches further."""
+def _site(study, body: geometry.Body, points: np.ndarray, counts: tuple[int, ...]) -> random_properties.Site:
+    """Where the fields of a study are needed."""
     cell = study.discretisation.cell_m
-    beyond = 0.25 * body.height if body.toe > body.crest_edge else 0.0
-    return random_properties.Site(
-        points,
-        cell,
-        cell / sqrt(study.discretisation.points_per_cell),
-        body.height,
-        (body.toe + beyond, body.height),
-    )
+    square = cell / sqrt(study.discretisation.points_per_cell)
+    return random_properties.Site(points, cell, square, body.height, body.reach, counts)

@@ -80,8 +80,15 @@ def residual_above_peak(prepared: Prepared, fields: dict[str, np.ndarray]) -> fl
     """
     if "residual_cohesion" not in fields:
         return None
-    peak = fields.get("cohesion", prepared.scene.material.cohesion_kpa * 1e3)
-    return float(np.mean(fields["residual_cohesion"] > peak))
+    peak = fields.get("cohesion", own_cohesion(prepared.scene))
+    own = prepared.fields["residual_cohesion"].where
+    return float(np.mean((fields["residual_cohesion"] > peak)[own]))
+
+
+def own_cohesion(scene: scenes.Scene) -> np.ndarray:
+    """Peak cohesion of the materials at their points, shape (n,) [Pa]; NaN where a law has none."""
+    values = [getattr(material, "cohesion_kpa", nan) * 1e3 for material in scene.soils.materials]
+    return scene.soils.of_each(values)
 
 
 def run(
@@ -275,8 +282,7 @@ def _simulate(
         observer.look(now, is_over=now.status != RUNNING or now.time >= end)
     final = observer.points()
     status, reason = verdict(now, study, scene, final)
-    cohesion = {"cohesion": np.full(final["x"].shape, getattr(scene.material, "cohesion_kpa", nan) * 1e3)}
-    final |= cohesion | fields
+    final |= {"cohesion": own_cohesion(scene)} | fields
     quantities = measure(study, scene, own, final, observer, now, status) | uncertain_values(prepared, xi)
     quantities |= _factor(at_values, fields) | balance
     return Outcome(

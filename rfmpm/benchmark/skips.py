@@ -17,6 +17,7 @@ from rfmpm.kernel_tools import Tensor
 from rfmpm.mpm import scene as scenes
 from rfmpm.mpm.initial_stress import elastic_gravity_stress
 from rfmpm.mpm.laws.elastic import hooke
+from rfmpm.mpm.soils import soils_of
 from rfmpm.mpm.solvers import advance
 from rfmpm.mpm.solvers.grid import clear, update_grid
 from rfmpm.mpm.state import start
@@ -85,7 +86,11 @@ class Bench:
     def of_residual(self, residual: float) -> Prepared:
         """The slope without a random strength, with another residual cohesion [kPa]."""
         study = self.study.with_changes({"material.0.residual_cohesion_kpa": residual})
-        return replace(self.plain, study=study, scene=replace(self.plain.scene, material=study.material[0]))
+        return replace(
+            self.plain,
+            study=study,
+            scene=replace(self.plain.scene, soils=soils_of(study, self.plain.scene.soils.counts)),
+        )
 
 
 def with_controls(prepared: Prepared, **changes) -> Prepared:

@@ -18,6 +18,8 @@ import numpy as np
 from numba.core import cgutils, types
 from numba.extending import intrinsic, overload
 
+from rfmpm.kernel_tools.records import Ranges
+
 # Contraction lets the compiler fuse a product and a sum into one rounding; it leaves NaN and infinity alone.
 _OPTIONS = {"error_model": "numpy", "fastmath": {"contract"}}
 inline_options = {"jit_options": {"forceinline": True, **_OPTIONS}}
@@ -104,6 +106,10 @@ def part(record, first, last):
     """View of the points or nodes first, ..., last - 1 of a record, records within it too; the rest passes through."""
     if isinstance(record, np.ndarray):
         return record[first:last]
+    if isinstance(record, Ranges):
+        ends = [min(max(bound, first), last) for bound in record.bounds]
+        own = tuple(part(one, ends[k] - a, ends[k + 1] - a) for k, (one, a, _) in enumerate(record.each()))
+        return Ranges(own, tuple(end - first for end in ends))
     if isinstance(record, tuple):
         return _map(lambda f: part(f, first, last), record)
     return record
@@ -129,9 +135,29 @@ def _put(record, index, values):
 
 @overload(part, **inline_options)
 def _part(record, first, last):
+    if is_ranges(record):
+        return _part_of_ranges(len(record.types[0]))
     classes = {"borrow": _borrow}
     view = _rebuild("record", record, lambda name: f"borrow({name}, first, last)", classes)
     return define("part", f"def part(record, first, last):\n    return {view}", classes)
+
+
+def is_ranges(kind):
+    """Whether a Numba type is that of Ranges."""
+    return isinstance(kind, types.BaseNamedTuple) and kind.instance_class is Ranges
+
+
+def _part_of_ranges(count):
+    """Make `part` of a record of so many ranges: each range of the part begins and ends within it."""
+    ends = [f"    e{k} = min(max(record.bounds[{k}], first), last)" for k in range(count + 1)]
+    own = "".join(
+        f"part(record.records[{k}], e{k} - record.bounds[{k}], e{k + 1} - record.bounds[{k}]), " for k in range(count)
+    )
+    bounds = "".join(f"e{k} - first, " for k in range(count + 1))
+    lines = ["def part(record, first, last):", *ends, f"    return Ranges(({own}), ({bounds}))"]
+    return define(
+        "part_of_ranges", "\n".join(lines).replace("def part(", "def part_of_ranges("), {"part": part, "Ranges": Ranges}
+    )
 
 
 @intrinsic

@@ -32,12 +32,12 @@ def energy_shares(now: Progress, stored_before: float, stored_now: float) -> dic
     return {name: energy / work if isfinite(energy) and work > 0.0 else nan for name, energy in energies.items()}
 
 
-def elastic_energy(points: Points, lame: float, shear: float) -> float:
+def elastic_energy(points: Points, lame: float | np.ndarray, shear: float | np.ndarray) -> float:
     """Elastic energy stored in the stresses.
 
     Args:
         points: the points.
-        lame, shear: elastic constants [Pa].
+        lame, shear: elastic constants, one value or shape (n,) [Pa].
 
     Returns:
         Sum over points of V sigma : C^-1 : sigma / 2 [J/m].

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rfmpm.kernel_tools import each_record, mapped
 from rfmpm.mpm.boundary import Walls
 from rfmpm.mpm.cells import make_cells
 from rfmpm.mpm.energy import elastic_energy
@@ -65,11 +66,11 @@ def relaxation(scene: Scene, own: Released, factor: float = 1.0) -> Relaxation:
     points, before = scene.points, scene.controls
     height = float(np.ptp(points.position.y)) + scene.cell
     weight = before.gravity * float(points.mass.sum() / points.volume.sum())
-    youngs = scene.shear * (3.0 * scene.lame + 2.0 * scene.shear) / (scene.lame + scene.shear)
+    youngs = float(np.min(scene.shear * (3.0 * scene.lame + 2.0 * scene.shear) / (scene.lame + scene.shear)))
     unit = SINKING * scene.cell
     stiffer = weight * height**2 / (youngs * unit)
     speed = before.wave_speed * sqrt(stiffer)
-    period = 4.0 * height / (speed * sqrt(scene.shear / (scene.lame + 2.0 * scene.shear)))
+    period = 4.0 * height / (speed * scene.soils.slowest_share)
     controls = before._replace(
         wave_speed=speed,
         dissipation_time=inf,
@@ -79,7 +80,7 @@ def relaxation(scene: Scene, own: Released, factor: float = 1.0) -> Relaxation:
         settling_rate=CRITICAL_SHARE * 4.0 * pi / period,
     )
     own = own._replace(
-        law=own.law.quasi_static(stiffer, factor),
+        law=mapped(lambda law: law.quasi_static(stiffer, factor), own.law),
         grid=empty_grid(scene.axes),
         cells=None if own.cells is None else make_cells(len(points.mass), scene.axes),
     )
@@ -144,8 +145,11 @@ def raise_gravity(scene: Scene, own: Released) -> Verdict:
     for component, first in zip(own.points.position, scene.points.position, strict=True):
         component[:] = first
     own.points.volume[:] = scene.points.volume
-    for values in (*own.points.velocity, *(own.history or ())):
+    for values in own.points.velocity:
         values[:] = 0.0
+    for history in each_record(own.history):
+        for values in history:
+            values[:] = 0.0
     return verdict
 
 

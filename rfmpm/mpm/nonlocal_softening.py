@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rfmpm.kernel_tools import BLOCK, gather, kernel, part, scatter, zeros
+from rfmpm.kernel_tools import BLOCK, by_range, gather, kernel, part, scatter, zeros
 from rfmpm.mpm.stages import locate, make_scratch
 
 OVERSHOOT = 2.0  # m
@@ -19,15 +19,16 @@ COARSEST = 0.05  # least variance that is left to the Gaussian on the grid, in s
 
 
 class Averaging(NamedTuple):
-    """How the plastic strain is averaged; the grid's own node arrays are not touched."""
+    """How the plastic strain is averaged, and whose; the grid's own node arrays are not touched."""
 
+    history: tuple  # of the points that soften by the average; those of another soil bring nothing to it
     overshoot: float  # m [-]
     taps: np.ndarray  # (2 r + 1,) weights of neighbouring nodes along one axis [-]
     sums: np.ndarray  # (rows, columns, 4): volume, volume times plastic strain, two unused
     spread: np.ndarray  # the same, while the other axis is averaged
 
 
-def averaging(length: float, axes) -> Averaging:
+def averaging(length: float, history: tuple, axes) -> Averaging:
     """Prepare the averages of a scene.
 
     Going from the points to the nodes and back spreads a value by itself, with the variance of the shape functions; the
@@ -35,6 +36,7 @@ def averaging(length: float, axes) -> Averaging:
 
     Args:
         length: standard deviation of the average [m].
+        history: of the points that soften by it.
         axes: shape functions.
 
     Returns:
@@ -46,7 +48,7 @@ def averaging(length: float, axes) -> Averaging:
     taps = np.array([exp(-0.5 * k * k / variance) for k in range(-radius, radius + 1)])
     rows, columns = axes.y.cells + 1, axes.x.cells + 1
     room = zeros(rows, columns), zeros(rows, columns)
-    return Averaging(OVERSHOOT, taps / taps.sum(), *room)
+    return Averaging(history, OVERSHOOT, taps / taps.sum(), *room)
 
 
 def shape_variance(axis) -> float:
@@ -82,9 +84,16 @@ def widen(averaging, box):
 @kernel
 def sum_strain(points, history, axes, sums):
     """Add volume, and volume times plastic strain, to the nodes of `sums`."""
+    by_range(sum_range, (history,), points.mass.size, (points, axes, sums))
+
+
+@kernel
+def sum_range(history, start, end, points, axes, sums):
+    """Add those of one soil."""
+    own = part(points, start, end)
     scratch = make_scratch(axes)
-    for first in range(0, points.mass.size, BLOCK):
-        block, last = locate_block(points, axes, scratch, first)
+    for first in range(0, own.mass.size, BLOCK):
+        block, last = locate_block(own, axes, scratch, first)
         for p in range(last - first):
             volume = block.volume[p]
             amount = volume, volume * history.plastic_strain[first + p], 0.0, 0.0
@@ -109,9 +118,16 @@ def convolve_columns(averaging, box, own):
 @kernel
 def share_strain(points, history, axes, averaging):
     """Let the points soften by the average around them."""
+    by_range(share_range, (history,), points.mass.size, (points, axes, averaging))
+
+
+@kernel
+def share_range(history, start, end, points, axes, averaging):
+    """Let those of one soil soften."""
+    own = part(points, start, end)
     scratch, m = make_scratch(axes), averaging.overshoot
-    for first in range(0, points.mass.size, BLOCK):
-        _, last = locate_block(points, axes, scratch, first)
+    for first in range(0, own.mass.size, BLOCK):
+        _, last = locate_block(own, axes, scratch, first)
         for p in range(first, last):
             around = gather(averaging.sums, scratch.x, scratch.y, p - first)
             mixed = (1.0 - m) * history.plastic_strain[p] + m * around[1] / around[0]

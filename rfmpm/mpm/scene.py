@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import inf, pi, sqrt
+from math import inf, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -11,17 +11,13 @@ from rfmpm.kernel_tools import Tensor, Vector, zeros
 from rfmpm.mpm.boundary import WALLS, Walls
 from rfmpm.mpm.cells import Cells, make_cells
 from rfmpm.mpm.energy import elastic_energy
-from rfmpm.mpm.geometry import Body, body, fill
+from rfmpm.mpm.geometry import Body, Filling, body, fill_body
 from rfmpm.mpm.initial_stress import INITIAL_STRESSES, Unreleased
-from rfmpm.mpm.laws import LAWS
-from rfmpm.mpm.laws.elastic import lame_constants
-from rfmpm.mpm.laws.history import NonlocalHistory
 from rfmpm.mpm.nonlocal_softening import Averaging, averaging
 from rfmpm.mpm.shapes import build_axis
+from rfmpm.mpm.soils import GRAVITY, Soils, soils_of, stress_factor
 from rfmpm.mpm.solvers import Alone, Controls, make_team
 from rfmpm.mpm.state import Axes, Grid, Points, copy_points
-
-GRAVITY = 9.81  # [m/s2]
 
 FILTER_INTERVAL = 8  # steps; the filter acts at a rate, so this only spreads its cost
 AVERAGE_SHARE = 0.5  # of the time in which a shear wave crosses the softening length, from one average to the next
@@ -39,10 +35,11 @@ class Scene:
     axes: Axes
     walls: Walls
     controls: Controls
-    material: object  # the study's material
-    lame: float  # [Pa]
-    shear: float  # [Pa]
+    soils: Soils
+    lame: float | np.ndarray  # shape (n,) where there are several materials [Pa]
+    shear: float | np.ndarray  # the same [Pa]
     cell_means: bool  # volumetric strain and pressure are means over the points of a cell
+    removed: Filling | None = None  # points that are there when the initial stresses are found, and then cut away
 
 
 def build(study) -> Scene:
@@ -58,17 +55,16 @@ def build(study) -> Scene:
     """
     cell = study.discretisation.cell_m
     shape = body(study)
-    position, volume = fill(shape.outline, cell, study.discretisation.points_per_cell)
+    points, removed = fill_body(study, shape)
     kind, per_cell = study.discretisation.shape, study.discretisation.points_per_cell
     axes = Axes(*(build_axis(kind, cell, round(extent / cell), per_cell) for extent in (shape.length, shape.top)))
-    return _scene(study, shape, axes, position, volume)
+    return _scene(study, shape, axes, points, removed)
 
 
 def with_parameters(scene: Scene, study) -> Scene:
     """Make the scene of a study that differs from the scene's own in numbers of material and boundaries alone.
 
-    Elastic stresses at rest are proportional to the unit weight and do not depend on Young's modulus, so that only
-    another Poisson's ratio takes another solve.
+    Elastic stresses at rest are scaled where they can be, see `stress_factor`; else they are found anew.
 
     Args:
         scene: of the other study.
@@ -77,44 +73,74 @@ def with_parameters(scene: Scene, study) -> Scene:
     Returns:
         The scene.
     """
-    before, after = scene.material, study.material[0]
-    stress = None
-    if study.time.initial_stress == "elastic" and before.poissons_ratio == after.poissons_ratio:
-        factor = after.unit_weight_kn_m3 / before.unit_weight_kn_m3
-        stress = Tensor(*(factor * component for component in scene.points.stress))
-    position = np.column_stack(scene.points.position)
-    return _scene(study, scene.body, scene.axes, position, scene.points.volume.copy(), stress)
+    stress, points = None, scene.points
+    factor = stress_factor(scene.soils, soils_of(study, scene.soils.counts))
+    if study.time.initial_stress == "elastic" and factor is not None:
+        stress = Tensor(*(factor * component for component in points.stress))
+    filling = Filling(np.column_stack(points.position), points.volume.copy(), scene.soils.counts)
+    return _scene(study, scene.body, scene.axes, filling, scene.removed, stress)
 
 
-def _scene(study, shape: Body, axes: Axes, position: np.ndarray, volume: np.ndarray, stress: Tensor | None = None):
-    cell, material = study.discretisation.cell_m, study.material[0]
-    density = material.unit_weight_kn_m3 * 1e3 / GRAVITY
-    lame, shear = lame_constants(material.youngs_modulus_kpa * 1e3, material.poissons_ratio)
+def _scene(
+    study, shape: Body, axes: Axes, filling: Filling, removed: Filling | None, stress: Tensor | None = None
+) -> Scene:
+    cell, soils = study.discretisation.cell_m, soils_of(study, filling.counts)
+    position, volume, _ = filling
+    lame, shear = soils.elastic_constants
     walls = Walls(_wall(study.boundary.base), _wall(study.boundary.sides))
-    mass = density * volume
-    length = getattr(material, "softening_length_m", None)
+    mass = soils.density * volume
+    length = soils.softening_length
     averaged = study.discretisation.volumetric_strain == "cell_mean"
     if stress is None:
-        still = Unreleased(shape.outline, position, mass, volume, axes, walls, lame, shear, GRAVITY, averaged)
-        stress = INITIAL_STRESSES[study.time.initial_stress](still, study)
+        stress = _stress_at_rest(study, shape, filling, removed, axes, walls, averaged)
     still = Vector(np.zeros(len(volume)), np.zeros(len(volume)))
     points = Points(Vector(*position.T.copy()), still, mass, volume, stress)
     controls = Controls(
         gravity=GRAVITY,
         cell=cell,
-        wave_speed=sqrt((lame + 2.0 * shear) / density),
+        wave_speed=soils.wave_speed(),
         courant=study.time.step_fraction,
         dissipation_time=study.discretisation.dissipation_time_s,
         filter_interval=FILTER_INTERVAL,
-        average_interval=AVERAGE_SHARE * length / sqrt(shear / density) if length else inf,
+        average_interval=_average_interval(soils, length) if length else inf,
         rest_fraction=REST_FRACTION,
         rest_time=REST_TIME,
         own_share=axes.x.OWN_SHARE,
-        settling_rate=0.0 if material.law == "elastic" else _critical_rate(shape, sqrt(shear / density)),
+        settling_rate=_critical_rate(shape, soils.shear_wave_speed(lambda material: material.law != "elastic")),
         energy_scale=elastic_energy(points, lame, shear),
         growth_limit=GROWTH_LIMIT,
     )
-    return Scene(shape, cell, points, axes, walls, controls, material, lame, shear, averaged)
+    return Scene(shape, cell, points, axes, walls, controls, soils, lame, shear, averaged, removed)
+
+
+def _stress_at_rest(
+    study, shape: Body, filling: Filling, removed: Filling | None, axes: Axes, walls: Walls, averaged: bool
+) -> Tensor:
+    """Stresses of the points, found with those that are then cut away."""
+    position, volume, counts = filling
+    parts = [soils_of(study, counts)]
+    if removed is not None:
+        parts.append(soils_of(study, removed.counts))
+        position = np.concatenate([position, removed.position])
+        volume = np.concatenate([volume, removed.volume])
+    (lame, shear), density = (
+        [_together([part.elastic_constants[k] for part in parts]) for k in range(2)],
+        _together([part.density for part in parts]),
+    )
+    mass = density * volume
+    still = Unreleased(shape.outline, position, mass, volume, axes, walls, lame, shear, GRAVITY, averaged)
+    stress = INITIAL_STRESSES[study.time.initial_stress](still, study)
+    return Tensor(*(component[: sum(counts)] for component in stress))
+
+
+def _together(values: list) -> float | np.ndarray:
+    """Values of points that follow each other; one value of a single material stays one."""
+    return values[0] if np.ndim(values[0]) == 0 else np.concatenate(values)
+
+
+def _average_interval(soils: Soils, length: float) -> float:
+    """Time from one average of the softening to the next [s]."""
+    return AVERAGE_SHARE * length / soils.shear_wave_speed(lambda one: getattr(one, "softening_length_m", None))
 
 
 class Released(NamedTuple):
@@ -140,11 +166,11 @@ def release(scene: Scene, strengths: Mapping[str, np.ndarray] | None) -> Release
         What it owns.
     """
     count = len(scene.points.mass)
-    law, history = LAWS[scene.material.law].build(scene.material, scene.cell, count, strengths or {})
+    law, history = scene.soils.laws(scene.cell, strengths or {})
     cells = make_cells(count, scene.axes) if scene.cell_means else None
-    means = None
-    if isinstance(history, NonlocalHistory):
-        means = averaging(scene.material.softening_length_m, scene.axes)
+    averaged, means = scene.soils.averaged(history), None
+    if averaged is not None:
+        means = averaging(scene.soils.softening_length, averaged, scene.axes)
     return Released(copy_points(scene.points), law, history, empty_grid(scene.axes), cells, means)
 
 

@@ -19,6 +19,7 @@ from rfmpm.kernel_tools import (
     kernel,
     lanes,
     make_stencil,
+    part,
     put,
     put_lanes,
     put_stencil,
@@ -159,6 +160,12 @@ def deform(points, law, history, gradient, dt, tally):
         stored = elastic_density(stress, law.lame, law.shear) - elastic_density(old, law.lame, law.shear)
         tally.work[p] += volume * work
         tally.plastic[p] += volume * (work - stored)
+
+
+@kernel
+def deform_range(law, history, first, last, points, gradient, dt, tally):
+    """Strain the points of one soil."""
+    deform(part(points, first, last), law, history, gradient[4 * first : 4 * last], dt, tally)
 
 
 @kernel

@@ -4,14 +4,14 @@ Sulsky, Chen and Schreyer (1994), with the points strained by their updated velo
 Nairn and Hammerquist (2021) for FMPM.
 """
 
-from rfmpm.kernel_tools import BLOCK, gather, kernel, part, scatter
+from rfmpm.kernel_tools import BLOCK, by_range, gather, kernel, part, scatter
 from rfmpm.mpm.cells import divide, share_dilatation, share_pressure, sum_dilatation, sum_pressure
 from rfmpm.mpm.protocols import weights
 from rfmpm.mpm.stages import (
     accelerate,
     add_momentum,
     collect,
-    deform,
+    deform_range,
     extend,
     interpolate,
     interpolate_slopes,
@@ -159,7 +159,7 @@ def grid_to_points(points, axes, straining, scratch, gradient, dt, tally):
 def strain(points, law, history, gradient, dt, tally):
     """Turn the stresses of a block with the body and strain its points."""
     rotate(points.stress, gradient, dt)
-    deform(points, law, history, gradient, dt, tally)
+    by_range(deform_range, (law, history), points.mass.size, (points, gradient, dt, tally))
 
 
 @kernel

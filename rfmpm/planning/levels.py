@@ -34,8 +34,7 @@ def point_counts(study) -> np.ndarray:
 
     counts = []
     for level in studies_by_level(study):
-        cells, shape = level.discretisation, geometry.body(level)
-        counts.append(len(geometry.fill(shape.outline, cells.cell_m, cells.points_per_cell)[1]))
+        counts.append(len(geometry.fill_body(level, geometry.body(level))[0].volume))
     return np.array(counts)
 
 

@@ -5,6 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
+from rfmpm.ground import height_at
+
 
 @dataclass(frozen=True)
 class FinalState:
@@ -28,6 +30,7 @@ class FinalState:
     block_plastic_strain: float  # [-]
     block_minimum_area: float  # [m2]
     surface_bin: float | None  # [m]
+    ground: np.ndarray | None = None  # corners of the ground surface at the start, shape (k, 2) [m]; None: level crest
 
     @cached_property
     def failed(self) -> np.ndarray:
@@ -37,7 +40,8 @@ class FinalState:
     @cached_property
     def top_row(self) -> np.ndarray:
         """Which points lie right under the crest at the start; shape (n,)."""
-        return (self.y_initial > self.crest_height - self.spacing) & (self.x_initial < self.crest_edge)
+        top = self.crest_height if self.ground is None else height_at(self.ground, self.x_initial)
+        return (self.y_initial > top - self.spacing) & (self.x_initial < self.crest_edge)
 
 
 def label_cells(x: np.ndarray, y: np.ndarray, cell: float, diagonal: bool) -> np.ndarray:

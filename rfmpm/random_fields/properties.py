@@ -34,11 +34,20 @@ class Site(NamedTuple):
     square: float  # side of the square that a material point stands for [m]
     crest: float  # height of the crest, from which depths are measured [m]
     extent: tuple[float, float]  # length and height from the origin that squares of any cell size may touch [m]
+    counts: tuple[int, ...]  # points of each material, which follow each other in the order of the study
 
     @property
     def middles(self) -> np.ndarray:
         """Middles of the points' squares, shape (n, 2) [m]; where the surface cuts a square, its point is elsewhere."""
         return (np.floor(self.points / self.square + 1e-9) + 0.5) * self.square
+
+    def of_material(self, number: int) -> "Site":
+        """Where fields of one material are needed."""
+        if len(self.counts) == 1:
+            return self
+        return self._replace(
+            points=self.points[slice(*_span(self.counts, number))], counts=self.counts[number : number + 1]
+        )
 
 
 @dataclass(frozen=True)
@@ -70,12 +79,22 @@ class Property:
         parts: the fields of its soils that have points.
         count: number of points that carry it.
         taken: which of them each material point takes, shape (n, k); None where the material points carry it.
+        elsewhere: values at the points of all materials in SI units, its own without variation, shape (n,); NaN where a
+            law has no such property. None where there is one material.
+        span: first point of its own material and one after the last; None where there is one material.
     """
 
     name: str
     parts: tuple[Part, ...]
     count: int
     taken: np.ndarray | None
+    elsewhere: np.ndarray | None = None
+    span: tuple[int, int] | None = None
+
+    @property
+    def where(self) -> slice:
+        """The points of its own material among those of all."""
+        return slice(None) if self.span is None else slice(*self.span)
 
     @property
     def n_variables(self) -> int:
@@ -115,10 +134,11 @@ def prepare(study: Any, site: Site, store: Path | None = None, known: Properties
     entries: dict[str, Property] = {}
     earlier = known.entries.values() if known is not None else ()
     for name, settings in study.random_field.items():
-        material = next(material for material in study.material if material.name == settings.material)
+        number = next(k for k, material in enumerate(study.material) if material.name == settings.material)
         before = [part for entry in (*earlier, *entries.values()) for part in entry.parts]
         try:
-            entries[name] = _prepare_property(name, settings, material, site, store, before)
+            own = _prepare_property(name, settings, study.material[number], site.of_material(number), store, before)
+            entries[name] = own if len(site.counts) == 1 else _placed(own, study.material, site.counts, number)
         except ValueError as error:
             raise ValueError(f"random_field.{name}: {error}") from None
     if not study.random_field_correlation:
@@ -171,6 +191,8 @@ def means(properties: Properties, count: int) -> dict[str, np.ndarray]:
     """Mean of each property in its uppermost soil at the crest, shape (count,) each: what a kernel compiles for."""
     return {
         name: np.full(count, KINDS[name].value(np.array(entry.parts[0].mean)))
+        if entry.elsewhere is None
+        else entry.elsewhere.copy()
         for name, entry in properties.entries.items()
     }
 
@@ -203,6 +225,18 @@ def _prepare_property(
             raise ValueError(f"{path}{error}") from error
         parts.append(Part(number, own, value, places, members, prepared))
     return Property(name, tuple(parts), len(points), taken)
+
+
+def _span(counts: tuple[int, ...], number: int) -> tuple[int, int]:
+    return sum(counts[:number]), sum(counts[: number + 1])
+
+
+def _placed(entry: Property, materials: Any, counts: tuple[int, ...], number: int) -> Property:
+    """The property of one of several materials, with what the others have in its stead."""
+    kind = KINDS[entry.name]
+    numbers = [getattr(material, kind.mean_key, float("nan")) for material in materials]
+    values = np.repeat([float(kind.value(np.array(kind.field_mean(one)))) for one in numbers], counts)
+    return replace(entry, elsewhere=values, span=_span(counts, number))
 
 
 def _trend(settings: Any, crest: float) -> Trend | None:
@@ -246,4 +280,9 @@ def _values(entry: Property, z: np.ndarray) -> np.ndarray:
     values = np.empty(entry.count)
     for part in entry.parts:
         values[part.members] = part.field.marginal.transform(z[part.members])
-    return KINDS[entry.name].value(values if entry.taken is None else take(values, entry.taken))
+    own = KINDS[entry.name].value(values if entry.taken is None else take(values, entry.taken))
+    if entry.elsewhere is None:
+        return own
+    everywhere = entry.elsewhere.copy()
+    everywhere[entry.where] = own
+    return everywhere

@@ -87,5 +87,7 @@ def _of_fields(found: Drivers, dataset, study, quantity: str, replay: "planning.
     places = np.column_stack([at.x, at.y])
     for name, influence in field_influence(prepared, index, values, vector, MOST_FIELDS).items():
         label = name.replace("_", " ")
-        found.maps.append(influence_map(places, influence, outline(study), label, NOUNS[quantity]))
+        found.maps.append(
+            influence_map(places[prepared.fields[name].where], influence, outline(study), label, NOUNS[quantity])
+        )
         found.numbers[f"influence_of_{name}"] = influence

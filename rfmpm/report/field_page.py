@@ -76,8 +76,8 @@ def write_field(study, index: int, directory: Path) -> list[str]:
         if any(is_conditional(soil.shares) for soil in soils):
             draw_conditional(study, index, look, entry, soils, [fields[name] for fields in found.first_two], path)
         else:
-            points = np.column_stack(prepared.scene.points.position)
-            draw_field(study, index, look, (points, drawn[name] / look.per_unit), soils, path)
+            points = np.column_stack(prepared.scene.points.position)[entry.where]
+            draw_field(study, index, look, (points, drawn[name][entry.where] / look.per_unit), soils, path)
         lines.append(str(path))
     if share := realisation.residual_above_peak(prepared, drawn):
         lines.append(f"residual cohesion above the peak at {share:.1%} of the points: the law takes the peak there")

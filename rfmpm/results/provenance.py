@@ -8,7 +8,7 @@ from typing import Any
 
 # Sources a row depends on; a change in any of them may change its bits.
 PHYSICS = (
-    *("kernel_tools", "mpm", "random_fields", "quantities", "stability", "observer.py"),
+    *("ground", "kernel_tools", "mpm", "random_fields", "quantities", "stability", "observer.py"),
     *("initial_state.py", "preparation.py", "realisation.py", "seeds.py", "uncertainty.py"),
     *("sampling", "estimators/chains.py", "estimators/subset_simulation.py"),  # which random vector is whose
 )

@@ -69,18 +69,22 @@ def strength_of(prepared: Any, fields: Mapping[str, np.ndarray]) -> Strength:
     Raises:
         ValueError: the material has none.
     """
-    material, points = prepared.scene.material, prepared.scene.points
-    if material.law == "elastic":
-        raise ValueError('material.0.law = "elastic": has no strength, hence no factor of safety')
-    count = len(points.mass)
-    cohesion = fields["cohesion"] if "cohesion" in fields else np.full(count, material.cohesion_kpa * 1e3)
-    if material.law == "von_mises":
-        cohesion, angle = cohesion * STRENGTH_OF[material.strength_convention], np.zeros(count)
-    elif "friction_angle" in fields:
-        angle = fields["friction_angle"]
-    else:
-        angle = np.full(count, radians(material.friction_angle_deg))
+    soils, points = prepared.scene.soils, prepared.scene.points
+    for number, material in enumerate(soils.materials):
+        if material.law == "elastic":
+            raise ValueError(f'material.{number}.law = "elastic": has no strength, hence no factor of safety')
+    own = soils.of_each([material.cohesion_kpa * 1e3 for material in soils.materials])
+    cohesion = fields.get("cohesion", own) * soils.of_each([_per_cohesion(material) for material in soils.materials])
+    angles = [radians(getattr(material, "friction_angle_deg", 0.0)) for material in soils.materials]
+    angle = fields["friction_angle"] if "friction_angle" in fields else soils.of_each(angles)
+    # Where a law has no friction, its field says so with something that is not a number.
+    angle = np.where(np.isnan(angle), 0.0, angle)
     return Strength(cohesion, angle, points.mass * GRAVITY / points.volume)
+
+
+def _per_cohesion(material: Any) -> float:
+    """Shear strength without normal stress over the cohesion [-]."""
+    return STRENGTH_OF[material.strength_convention] if material.law == "von_mises" else 1.0
 
 
 def lay(scene: Any, points_per_cell: int) -> tuple[Side, ...]:

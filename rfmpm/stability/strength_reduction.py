@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rfmpm.kernel_tools import mapped
 from rfmpm.mpm.equilibrium import Verdict, damped_start, relax, relaxation
 from rfmpm.mpm.scene import Released, Scene, release
 from rfmpm.mpm.state import copy_points
@@ -91,5 +92,5 @@ def _bracket(stands, factor: float) -> tuple[float, float]:
 
 def _copy(state: Released) -> Released:
     """A state whose points and history can change without it."""
-    history = type(state.history)(*(values.copy() for values in state.history))
+    history = mapped(lambda own: type(own)(*(values.copy() for values in own)), state.history)
     return state._replace(points=copy_points(state.points), history=history)

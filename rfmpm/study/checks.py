@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from math import sqrt
 
+from rfmpm.study.bodies import is_plain_body
 from rfmpm.study.correlation_checks import CORRELATION_CHECKS
 from rfmpm.study.data_checks import DATA_CHECKS
 from rfmpm.study.distribution_checks import DISTRIBUTION_CHECKS
@@ -13,6 +14,7 @@ from rfmpm.study.known import Known, Unknown, problem
 from rfmpm.study.layer_checks import LAYER_CHECKS
 from rfmpm.study.material_checks import MATERIAL_CHECKS
 from rfmpm.study.question_checks import QUESTION_CHECKS, level_problems
+from rfmpm.study.region_checks import REGION_CHECKS
 from rfmpm.study.size_checks import SIZE_CHECKS
 from rfmpm.study.uncertain_checks import UNCERTAIN_CHECKS, problems_at_the_ends
 
@@ -85,12 +87,28 @@ def _softening_has_one_length(known: Known) -> Iterator[Problem]:
             yield problem(known, f"{material}.softening_length_m", text)
 
 
-def _there_is_one_material(known: Known) -> Iterator[Problem]:
+def _there_is_a_material(known: Known) -> Iterator[Problem]:
     count = len(known["material"])
-    if count != 1:
-        yield problem(
-            known, "material", f"must be exactly one table, written [[material]]; there are {count or 'none'}"
-        )
+    if not count:
+        yield problem(known, "material", "must be one or more tables, written [[material]]; there are none")
+    elif count > 1 and is_plain_body(known):
+        text = f"must be exactly one table, written [[material]]; there are {count}, but no regions or layers of them"
+        yield problem(known, "material", text)
+
+
+def _softening_lengths_are_equal(known: Known) -> Iterator[Problem]:
+    """One average, over all points that soften by it, serves a scene."""
+    lengths = {}
+    for index in range(len(known["material"])):
+        key = f"material.{index}.softening_length_m"
+        if known[f"material.{index}.law"] == "von_mises" and known[key] is not None:
+            lengths[key] = known[key]
+    for key, length in lengths.items():
+        first, expected = next(iter(lengths.items()))
+        if length != expected:
+            yield problem(
+                known, key, f"must be that of {first}, {expected:g}, or left out: a scene has one such length"
+            )
 
 
 def _names_are_unique(known: Known) -> Iterator[Problem]:
@@ -110,11 +128,13 @@ def _histories_have_names_of_their_own(known: Known) -> Iterator[Problem]:
 
 CHECKS: list[Check] = [
     _histories_have_names_of_their_own,
+    *REGION_CHECKS,
     *SIZE_CHECKS,
     _residual_is_below_the_peak,
     _softening_does_not_snap_back,
     _softening_has_one_length,
-    _there_is_one_material,
+    _there_is_a_material,
+    _softening_lengths_are_equal,
     _names_are_unique,
     *DATA_CHECKS,
     *DISTRIBUTION_CHECKS,

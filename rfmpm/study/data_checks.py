@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from math import atan, degrees, exp, inf, log, log1p, sqrt
 from typing import NamedTuple
 
+from rfmpm.study.bodies import height_of
 from rfmpm.study.data_file import contradictions
 from rfmpm.study.distribution_checks import BOUNDED
 from rfmpm.study.errors import Problem
@@ -75,7 +76,7 @@ def _data_agree(known: Known) -> Iterator[Problem]:
 
 def _data_are_of_the_distribution(known: Known) -> Iterator[Problem]:
     for variable, field, placed in _soils_of_data(known):
-        unit, crest = "degrees" if variable == "friction_angle" else "kPa", known["geometry.height_m"]
+        unit, crest = "degrees" if variable == "friction_angle" else "kPa", height_of(known)
         for datum, _, soil in placed:
             (x, y), depth = datum.place, crest - datum.place[1]
             at = f"at x_m = {x:g}, y_m = {y:g}"
@@ -126,7 +127,7 @@ def _data_concern_the_body(known: Known) -> Iterator[Problem]:
 
 def _scales_away(known: Known, field: str, datum: Datum, number: int, soil: Soil) -> float:
     """Distance of a datum from the soil it is of, in scales of fluctuation."""
-    outline = outline_of_soil(outline_of_body(known), lines_of(known, field), number)
+    outline = outline_of_soil(outline_of_body(known, field), lines_of(known, field), number)
     if not outline:
         return inf
     keys = ("scale_of_fluctuation_h_m", "scale_of_fluctuation_v_m")
@@ -142,7 +143,7 @@ def _nearest(known: Known, field: str, placed: Sequence[tuple[Datum, int, Soil]]
     """The datum that is nearest to the soil it is of, and its distance [m]; None if the body holds no such soil."""
     found: tuple[Datum | None, float] = None, inf
     for datum, number, _ in placed:
-        outline = outline_of_soil(outline_of_body(known), lines_of(known, field), number)
+        outline = outline_of_soil(outline_of_body(known, field), lines_of(known, field), number)
         away = distance(datum.place, outline) if outline else inf
         if away < found[1]:
             found = datum, away

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 
+from rfmpm.study.bodies import height_of
 from rfmpm.study.errors import Problem
 from rfmpm.study.field_checks import LARGEST_VARIATION
 from rfmpm.study.known import Known, path_of, problem
@@ -77,7 +78,7 @@ def _variation_suits_the_distribution(known: Known) -> Iterator[Problem]:
 def _variation_at_the_base_suits_the_distribution(known: Known) -> Iterator[Problem]:
     """The coefficient of variation rises or falls from crest to base: what holds at both holds between them."""
     for variable, field, material in fields_of(known):
-        limit, height = _highest_variation(known, field), known["geometry.height_m"]
+        limit, height = _highest_variation(known, field), height_of(known)
         for soil in soils_of(known, variable, field, material):
             base = soil.mean_at(height)
             if limit is None or soil.deviation_gain is None or min(soil.mean, base) <= 0.0:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from math import isclose
 
+from rfmpm.study.bodies import height_of
 from rfmpm.study.errors import Problem
 from rfmpm.study.known import Known, path_of, problem
 from rfmpm.study.schema import one_of
@@ -63,7 +64,7 @@ def _trend_keeps_the_field_positive(known: Known) -> Iterator[Problem]:
             for key in given:
                 yield problem(known, f"{field}.{key}", "must be left out: a friction angle has no trend in kPa")
             continue
-        height = known["geometry.height_m"]
+        height = height_of(known)
         for soil in soils_of(known, variable, field, material):
             mean, base = soil.mean, soil.mean_at(height)
             if mean == 0.0:

@@ -1,7 +1,6 @@
 """Which studies can be known to be right only once their random fields have been made."""
 
-from math import radians, tan
-
+from rfmpm.ground import is_plain, regions_of, size_of_body
 from rfmpm.study.field_checks import SEPARABLE
 from rfmpm.study.field_models import RandomField
 from rfmpm.study.study import Study
@@ -35,12 +34,10 @@ def with_fastest_methods(study: Study) -> Study:
 
 def _count(study: Study) -> float:
     """Points in the rectangle around the body, at least those of the body itself."""
-    geometry = study.geometry
-    if geometry.kind == "slope":
-        length = geometry.crest_m + geometry.height_m / tan(radians(geometry.angle_deg))
-    else:
-        length = geometry.width_m
-    return length * geometry.height_m / study.discretisation.cell_m**2 * study.discretisation.points_per_cell
+    geometry, cell = study.geometry, study.discretisation.cell_m
+    regions = None if is_plain(geometry) else regions_of(geometry, study.material[0].name, cell)
+    _, length, height = size_of_body(geometry, regions)
+    return length * height / study.discretisation.cell_m**2 * study.discretisation.points_per_cell
 
 
 def _needs_making(field: RandomField, count: float) -> bool:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from math import cos, radians, sin, sqrt
 
+from rfmpm.study.bodies import height_of
 from rfmpm.study.errors import Problem
 from rfmpm.study.known import Known, path_of, problem
 
@@ -67,7 +68,7 @@ def _softening_does_not_snap_back(known: Known) -> Iterator[Problem]:
 
     Per unit plastic strain, sqrt(2/3 e:e), half the difference of the outer principal stresses unloads by sqrt(3) G.
     """
-    height = known["geometry.height_m"]
+    height = height_of(known)
     for material in _frictional(known):
         strain = known[f"{material}.residual_plastic_strain"]
         if strain is None:

@@ -27,28 +27,6 @@ class Campaign(Table):
             object.__setattr__(self, "realisations", 1)
 
 
-class SlopeGeometry(Table):
-    """[geometry] of a slope on a firm base at the level of its toe"""
-
-    kind: Literal["slope"]
-    height_m: Length = Field(description="Height of the slope [m], a whole number of cells, at least 4")
-    crest_m: Length = Field(description="Width of the crest [m], a whole number of cells, at least 2")
-    angle_deg: Number = Field(ge=0.01, le=90, description="Inclination of the slope face [degrees]")
-    foreland_m: Length = Field(description="Free length in front of the toe [m]")
-
-
-class BlockGeometry(Table):
-    """[geometry] of a rectangular body against the left side"""
-
-    kind: Literal["block"]
-    width_m: Length = Field(description="Width of the block [m], a whole number of cells")
-    height_m: Length = Field(description="Height of the block [m], a whole number of cells")
-    foreland_m: NotNegative = Field(le=1e6, description="Free length in front of the block [m]; 0 confines it")
-
-
-Geometry = Annotated[SlopeGeometry | BlockGeometry, Field(discriminator="kind")]
-
-
 class Discretisation(Table):
     """[discretisation]"""
 

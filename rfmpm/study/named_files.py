@@ -1,4 +1,4 @@
-"""Replaces the files that random fields of a study name by what they hold, so that a study stands by itself."""
+"""Replaces the files that random fields and regions of a study name by what they hold: a study stands by itself."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -7,14 +7,16 @@ from typing import Any
 from rfmpm.columns import ColumnsError
 from rfmpm.study.data_file import read_data
 from rfmpm.study.errors import Problem
+from rfmpm.study.region_file import read_region
 from rfmpm.study.sample_file import read_sample
 
 Read = Callable[[Path, Mapping[str, Any]], list[Any]]  # path, table of the field -> content
 CONTENT: dict[str, tuple[str, Read]] = {"data_file": ("data", read_data), "sample_file": ("sample", read_sample)}
+REGION: dict[str, tuple[str, Read]] = {"file": ("corners_m", read_region)}
 
 
 def read_named_files(tables: Mapping[str, Any], folder: Path) -> tuple[dict[str, Any], list[str]]:
-    """Replace the keys of `CONTENT` in every random field by what the files hold.
+    """Replace the keys of `CONTENT` in every random field, and `file` in every region, by what the files hold.
 
     Args:
         tables: of the study file; not changed.
@@ -23,20 +25,41 @@ def read_named_files(tables: Mapping[str, Any], folder: Path) -> tuple[dict[str,
     Returns:
         the tables without names of files, and what is wrong with the files, with the lines.
     """
-    problems: list[str] = []
-    fields = tables.get("random_field")
-    if not isinstance(fields, Mapping):
-        return dict(tables), problems
-    changed = dict(fields)
-    for variable, entry in fields.items():
-        for key, (content, read) in CONTENT.items():
-            if not isinstance(entry, Mapping) or not isinstance(entry.get(key), str):
-                continue
-            own = {name: value for name, value in changed[variable].items() if name != key}
-            found, wrong = _content(folder / entry[key], entry, content, read)
-            changed[variable] = own if wrong else own | {content: found}
-            problems += [str(Problem(("random_field", str(variable), key), text, entry[key])) for text in wrong]
-    return {**tables, "random_field": changed}, problems
+    changed, problems = dict(tables), []
+    fields, geometry = tables.get("random_field"), tables.get("geometry")
+    if isinstance(fields, Mapping):
+        changed["random_field"] = dict(fields)
+        for variable, entry in fields.items():
+            place = "random_field", str(variable)
+            changed["random_field"][variable] = _replaced(place, entry, CONTENT, folder, problems)
+    if isinstance(geometry, Mapping) and isinstance(geometry.get("region"), list | tuple):
+        regions = [
+            _replaced(("geometry", "region", number), entry, REGION, folder, problems)
+            for number, entry in enumerate(geometry["region"])
+        ]
+        changed["geometry"] = {**geometry, "region": regions}
+    return changed, problems
+
+
+def _replaced(
+    place: tuple[str | int, ...],
+    entry: Any,
+    contents: Mapping[str, tuple[str, Read]],
+    folder: Path,
+    problems: list[str],
+) -> Any:
+    """A table without names of files; what is wrong with them is added to `problems`."""
+    if not isinstance(entry, Mapping):
+        return entry
+    table = entry
+    for key, (content, read) in contents.items():
+        if not isinstance(entry.get(key), str):
+            continue
+        own = {name: value for name, value in table.items() if name != key}
+        found, wrong = _content(folder / entry[key], entry, content, read)
+        table = own if wrong else own | {content: found}
+        problems += [str(Problem((*place, key), text, entry[key])) for text in wrong]
+    return table
 
 
 def _content(path: Path, entry: Mapping[str, Any], content: str, read: Read) -> tuple[list[Any], list[str]]:

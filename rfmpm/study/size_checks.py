@@ -1,8 +1,10 @@
 """What the size of a study's body asks of its cells, its stiffness and its time."""
 
 from collections.abc import Callable, Iterator
-from math import floor, isclose, radians, sqrt, tan
+from math import floor, isclose, sqrt
 
+from rfmpm.ground import height_at
+from rfmpm.study.bodies import ground_of, height_of, is_plain_body, size_of
 from rfmpm.study.errors import Problem
 from rfmpm.study.known import Known, problem
 
@@ -48,34 +50,25 @@ def _points_resist_every_motion(known: Known) -> Iterator[Problem]:
         yield problem(known, "discretisation.points_per_cell", text)
 
 
-def _body(known: Known) -> tuple[float, float, float]:
-    """Area [m2], length [m] and height [m] of the body."""
-    height = known["geometry.height_m"]
-    if known["geometry.kind"] == "block":
-        width = known["geometry.width_m"]
-        return width * height, width, height
-    crest, face = known["geometry.crest_m"], height / tan(radians(known["geometry.angle_deg"]))
-    return (crest + 0.5 * face) * height, crest + face, height
-
-
 def _histories_are_of_the_body(known: Known) -> Iterator[Problem]:
     """A place may lie outside by a cell: what counts is the nearest material point."""
-    _, length, height = _body(known)
-    cell = known["discretisation.cell_m"]
-    face = length - known["geometry.crest_m"] if known["geometry.kind"] == "slope" else 0.0
-    for index in range(len(known["history"] or ())):
+    if not known["history"]:
+        return
+    size, cell = size_of(known), known["discretisation.cell_m"]
+    ground = ground_of(known)
+    for index in range(len(known["history"])):
         x, y = known[f"history.{index}.x_m"], known[f"history.{index}.y_m"]
-        ground = height if x <= length - face else height * (length - x) / face if face > 0.0 else 0.0
-        if x > length + cell or y > max(ground, 0.0) + cell:
+        height = float(height_at(ground, x))
+        if x > size.length + cell or y > height + cell:
             text = f"there is no soil within a cell of x_m = {x:.10g}, y_m = {y:.10g}"
-            if x <= length:
-                text += f"; the ground is at y_m = {ground:.6g} there"
+            if x <= size.length:
+                text += f"; the ground is at y_m = {height:.6g} there"
             yield problem(known, f"history.{index}.y_m", text)
 
 
 def _points_are_affordable(known: Known) -> Iterator[Problem]:
     cell, per_cell = known["discretisation.cell_m"], known["discretisation.points_per_cell"]
-    count = _body(known)[0] / cell**2 * per_cell
+    count = size_of(known).area / cell**2 * per_cell
     if count > LARGEST_POINT_COUNT:
         yield problem(known, "discretisation.cell_m", _too_many("material points", count, LARGEST_POINT_COUNT, cell))
         return
@@ -108,17 +101,18 @@ def _too_fine(cell: float, reference: float, count: float) -> str:
 
 def _lattice_points(known: Known, field: str) -> float:
     """Points of the reference lattice that carries a field."""
-    _, length, height = _body(known)
-    beyond = 0.25 * height if known["geometry.kind"] == "slope" else 0.0
+    _, length, height = size_of(known)
+    beyond = 0.25 * height if known["geometry.kind"] != "block" else 0.0
+    above = 0.0 if is_plain_body(known) else beyond
     cell = known[f"{field}.reference_cell_m"]
-    count = (length + beyond) / cell * height / cell
+    count = (length + beyond) / cell * (height + above) / cell
     per_square = 4 if known[f"{field}.reference_value"] == "point" else 1
     return count * known["discretisation.points_per_cell"] * per_square
 
 
 def _cells_are_affordable(known: Known) -> Iterator[Problem]:
     cell = known["discretisation.cell_m"]
-    _, length, height = _body(known)
+    _, length, height = size_of(known)
     count = (length + known["geometry.foreland_m"]) * height / cell**2
     if count > LARGEST_CELL_COUNT:
         yield problem(known, "discretisation.cell_m", _too_many("cells", count, LARGEST_CELL_COUNT, cell))
@@ -135,7 +129,7 @@ def _rounded(count: float) -> str:
 
 def _surface_bins_are_affordable(known: Known) -> Iterator[Problem]:
     width = known["output.surface_bin_m"]
-    length = _body(known)[1] + known["geometry.foreland_m"]
+    length = size_of(known).length + known["geometry.foreland_m"]
     if width and length / width > LARGEST_BIN_COUNT:
         least = length / LARGEST_BIN_COUNT
         text = f"gives {_rounded(length / width)} bins, at most {LARGEST_BIN_COUNT:,}: take {least:.3g} or more"
@@ -150,7 +144,7 @@ def _constrained_modulus(known: Known, index: int) -> float:
 
 def _stiffness_carries_the_weight(known: Known) -> Iterator[Problem]:
     """The soil must bear its own weight at strains for which the law and the initial stresses have a meaning."""
-    height = known["geometry.height_m"]
+    height = height_of(known)
     for index in range(len(known["material"])):
         weight = known[f"material.{index}.unit_weight_kn_m3"] * height
         limit = weight / HIGHEST_SELF_COMPRESSION

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from math import cos, hypot, radians, sin, sqrt, tan
 from typing import NamedTuple
 
+from rfmpm.study.bodies import Place, hull_of, is_plain_body
 from rfmpm.study.known import Known
 
 FRICTIONAL = ("mohr_coulomb", "drucker_prager")
@@ -20,7 +21,6 @@ MEAN_KEY = {
 LAYER_MEAN_KEY = {"cohesion": "mean_kpa", "residual_cohesion": "mean_kpa", "friction_angle": "mean_deg"}
 BORDER = 1e-9  # [m]; a point that near to a line is on it, and belongs to the soil above
 
-Place = tuple[float, float]  # x, y [m]
 Line = tuple[float, float]  # height at x = 0 [m], slope [-]
 
 
@@ -84,8 +84,10 @@ def of_field(variable: str, value: float) -> float:
     return tan(radians(value)) if variable == "friction_angle" else value
 
 
-def outline_of_body(known: Known) -> list[Place]:
-    """Corners of the body, anticlockwise from the lower left [m]."""
+def outline_of_body(known: Known, field: str) -> list[Place]:
+    """Corners of the body, anticlockwise from the lower left [m]; of several soils the hull of the field's own."""
+    if not is_plain_body(known):
+        return hull_of(known, known[f"{field}.material"])
     height = known["geometry.height_m"]
     if known["geometry.kind"] == "slope":
         crest = known["geometry.crest_m"]
@@ -99,7 +101,9 @@ def outline_of_points(known: Known, field: str) -> list[Place]:
     """Corners of the part of the body in which the points of a field lie; half a square from its straight sides."""
     half = 0.5 * (known[f"{field}.reference_cell_m"] or known["discretisation.cell_m"])
     half /= sqrt(known["discretisation.points_per_cell"])
-    outline = outline_of_body(known)
+    outline = outline_of_body(known, field)
+    if not is_plain_body(known):
+        return outline
     (_, _), (length, _), _, (_, height) = outline
     half = min(half, 0.5 * length, 0.5 * height)
     outline = clip(clip(outline, (-1.0, 0.0), -half), (0.0, 1.0), height - half)

@@ -15,6 +15,7 @@ from rfmpm.study.checks import joint_problems
 from rfmpm.study.diagnosis import Diagnosis
 from rfmpm.study.errors import Problem, StudyError
 from rfmpm.study.field_models import FieldCorrelation, Property, RandomField
+from rfmpm.study.geometry_models import Geometry
 from rfmpm.study.kinds import Table
 from rfmpm.study.known import Known, path_of
 from rfmpm.study.models import (
@@ -23,7 +24,6 @@ from rfmpm.study.models import (
     Discretisation,
     Failures,
     FrictionalMaterial,
-    Geometry,
     HistoryPoint,
     Material,
     Output,
@@ -63,7 +63,9 @@ class Study(Table):
     geometry: Geometry
     discretisation: Discretisation
     boundary: Boundary
-    material: Annotated[tuple[Material, ...], Hint("written [[material]]")] = Field(description="The materials: one")
+    material: Annotated[tuple[Material, ...], Hint("written [[material]]")] = Field(
+        description="The materials; more than one for regions and layers"
+    )
     random_field: dict[Property, RandomField] = Field(
         default_factory=dict, description="The random variables; left out: a homogeneous slope"
     )

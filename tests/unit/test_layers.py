@@ -26,7 +26,7 @@ FLOORS = {
     3.2: ("uncertainty",),
     3: ("mpm.scene", "mpm.solvers", "mpm.equilibrium", "random_fields.field", "random_fields.statistics"),
     2.5: (
-        *("mpm.geometry", "mpm.energy", "mpm.initial_stress"),
+        *("mpm.geometry", "mpm.energy", "mpm.initial_stress", "mpm.soils"),
         *("random_fields.store", "random_fields.trend", "random_fields.law"),
     ),
     2.2: ("mpm.transfer", "random_fields.averaging", "random_fields.gaussian_space"),
@@ -39,7 +39,7 @@ FLOORS = {
         "random_fields.cross_correlation",
     ),
     1: ("mpm.state", "mpm.protocols", "random_fields.lattice", "study", "variables", "seeds"),
-    0: ("kernel_tools", "columns"),
+    0: ("kernel_tools", "columns", "ground"),
 }
 FLOOR_OF = {name: floor for floor, names in FLOORS.items() for name in names}
 NAMESPACES = {"mpm", "random_fields"}  # rooms on several floors: their __init__ imports nothing and offers nothing

@@ -297,7 +297,11 @@ def test_ends_of_the_ranges_and_whole_numbers_for_lengths_are_accepted(study, pa
         ),
         ("material.0.cohesion_kpa", True, "material.0.cohesion_kpa = true: must be a number greater than 0"),
         ("time.end_s", INF, "time.end_s = inf: must be a finite number greater than 0"),
-        ("geometry.kind", "slop", 'geometry.kind = "slop": must be one of "slope", "block" (did you mean "slope"?)'),
+        (
+            "geometry.kind",
+            "slop",
+            'geometry.kind = "slop": must be one of "slope", "block", "regions" (did you mean "slope"?)',
+        ),
         ("time.scheme", "implicit", 'time.scheme = "implicit": must be "explicit"'),
         ("discretisation.points_per_cell", 5, "discretisation.points_per_cell = 5: must be one of 1, 4, 9, 16"),
         ("boundary.base", {"kind": "friction"}, "boundary.base.coefficient: missing; must be a number at least 0"),

@@ -24,8 +24,8 @@ class Unreleased(NamedTuple):
     volume: np.ndarray  # (n,) [m3/m]
     axes: Axes
     walls: Walls
-    lame: float  # [Pa]
-    shear: float  # [Pa]
+    lame: float | np.ndarray  # one value or shape (n,) [Pa]
+    shear: float | np.ndarray  # the same [Pa]
     gravity: float  # [m/s2]
     cell_means: bool  # volumetric strain and pressure are means over the points of a cell
 

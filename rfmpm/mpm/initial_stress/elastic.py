@@ -14,8 +14,8 @@ def elastic_gravity_stress(
     volume: np.ndarray,
     axes: Axes,
     walls: Walls,
-    lame: float,
-    shear: float,
+    lame: float | np.ndarray,
+    shear: float | np.ndarray,
     gravity: float,
     cell_means: bool,
 ) -> Tensor:
@@ -29,7 +29,7 @@ def elastic_gravity_stress(
         mass, volume: shape (n,) [kg/m], [m3/m].
         axes: shape functions.
         walls: walls of the domain.
-        lame, shear: elastic constants [Pa].
+        lame, shear: elastic constants, one value or shape (n,) [Pa].
         gravity: downwards [m/s2].
         cell_means: whether volumetric strain and pressure are means over the points of a cell.
 
@@ -42,11 +42,7 @@ def elastic_gravity_stress(
 
     value, slope_x, slope_y = interpolation(position, axes)
     exx, eyy, gxy = _strains(slope_x, slope_y, _averages(position, volume, axes) if cell_means else None)
-    v = diags(volume)
-    along, across = lame + 2.0 * shear, lame
-    mixed = exx.T @ v @ eyy
-    normal = along * (exx.T @ v @ exx + eyy.T @ v @ eyy) + across * (mixed + mixed.T)
-    stiffness = (normal + shear * (gxy.T @ v @ gxy)).tocsr()
+    stiffness = _stiffness(exx, eyy, gxy, volume, lame, shear)
     force = np.concatenate([np.zeros(value.shape[1]), -gravity * (value.T @ mass)])
     free = _free_components(axes, walls) & (stiffness.diagonal() > 0.0)
     # Scaled to a unit diagonal, for nodes that hardly touch a point; the shift keeps patterns that no point resists
@@ -59,6 +55,21 @@ def elastic_gravity_stress(
     exx, eyy, gxy = (strain @ displacement for strain in (exx, eyy, gxy))
     volumetric = lame * (exx + eyy)
     return Tensor(volumetric + 2.0 * shear * exx, volumetric + 2.0 * shear * eyy, volumetric, shear * gxy)
+
+
+def _stiffness(exx, eyy, gxy, volume, lame, shear):
+    """Sum over the points of volume times strain times elastic constants times strain."""
+    from scipy.sparse import diags
+
+    along, across = lame + 2.0 * shear, lame
+    if np.ndim(lame) == 0:
+        v = diags(volume)
+        mixed = exx.T @ v @ eyy
+        normal = along * (exx.T @ v @ exx + eyy.T @ v @ eyy) + across * (mixed + mixed.T)
+        return (normal + shear * (gxy.T @ v @ gxy)).tocsr()
+    along, across, skew = (diags(volume * constant) for constant in (along, across, shear))
+    mixed = exx.T @ across @ eyy
+    return (exx.T @ along @ exx + eyy.T @ along @ eyy + mixed + mixed.T + gxy.T @ skew @ gxy).tocsr()
 
 
 def _strains(slope_x, slope_y, averages):

@@ -57,7 +57,7 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
     since_average = now.since_average + dt
     if averaging is not None:  # noqa: SIM102  (an argument that is None is pruned here, not within a condition)
         if since_average >= controls.average_interval and culprit < 0:
-            average(passes, points, history, axes, averaging, touched)
+            average(passes, points, averaging.history, axes, averaging, touched)
             since_average = 0.0
     peak = max(now.peak_kinetic, kinetic)
     quiet = now.quiet_time + dt if kinetic < controls.rest_fraction * peak else 0.0

@@ -1,41 +1,8 @@
-"""The body before it moves: its outline, and the material points that fill it."""
+"""Material points of a convex outline, by clipping squares with its edges."""
 
-from math import ceil, radians, sqrt, tan
-from typing import NamedTuple
+from math import ceil, sqrt
 
 import numpy as np
-
-
-class Body(NamedTuple):
-    """A convex body on the base, against the left side of the domain."""
-
-    outline: np.ndarray  # (k, 2) corners, anticlockwise from the lower left [m]
-    toe: float  # x of the toe [m]
-    crest_edge: float  # x of the edge of the crest [m]
-    height: float  # [m]
-    length: float  # of the domain, a whole number of cells [m]
-    top: float  # of the domain, a whole number of cells [m]
-
-
-def body(study) -> Body:
-    """Describe the body of a study.
-
-    Args:
-        study: the study; its `geometry` and `discretisation` are read.
-
-    Returns:
-        The body, with the domain around it: as long as asked, rounded up to whole cells, and with room to heave.
-    """
-    geometry, cell = study.geometry, study.discretisation.cell_m
-    if geometry.kind == "slope":
-        crest = geometry.crest_m
-        toe = crest + geometry.height_m / tan(radians(geometry.angle_deg))
-    else:
-        crest = toe = geometry.width_m
-    height = geometry.height_m
-    outline = np.array([(0.0, 0.0), (toe, 0.0), (crest, height), (0.0, height)])
-    length = _whole_cells(toe + geometry.foreland_m, cell)
-    return Body(outline, toe, crest, height, length, _whole_cells(height + max(0.5 * height, 4.0 * cell), cell))
 
 
 def fill(outline: np.ndarray, cell: float, points_per_cell: int) -> tuple[np.ndarray, np.ndarray]:
@@ -57,23 +24,33 @@ def fill(outline: np.ndarray, cell: float, points_per_cell: int) -> tuple[np.nda
     spacing = cell / side
     columns, rows = (ceil(extent / spacing - 1e-9) for extent in outline.max(axis=0))
     corners = np.stack(np.meshgrid(np.arange(columns + 1), np.arange(rows + 1)), axis=-1) * spacing
-    inside = np.all(_distances(outline, corners) >= -1e-9 * spacing, axis=-1)
-    whole = inside[:-1, :-1] & inside[:-1, 1:] & inside[1:, :-1] & inside[1:, 1:]
-    positions, volumes = [], []
-    for row, column in np.argwhere(np.ones_like(whole)):
-        x, y = column * spacing, row * spacing
-        if whole[row, column]:
-            centre, volume = (x + 0.5 * spacing, y + 0.5 * spacing), spacing * spacing
-        else:
-            square = np.array([(x, y), (x + spacing, y), (x + spacing, y + spacing), (x, y + spacing)])
-            centre, volume = centroid(clip(square, outline))
-        if volume > 1e-6 * spacing * spacing:
-            positions.append(centre)
-            volumes.append(volume)
-    positions, volumes = np.array(positions), np.array(volumes)
+    beside = _distances(outline, corners)
+    inside = np.all(beside >= -1e-9 * spacing, axis=-1)
+    whole = _each_corner(inside).all(axis=0).ravel()
+    # What has all corners beyond one edge is outside, and need not be cut.
+    cut = ~whole & ~_each_corner(beside < 0.0).all(axis=0).any(axis=-1).ravel()
+    row, column = np.divmod(np.arange(len(whole)), columns)
+    positions = np.stack([column * spacing + 0.5 * spacing, row * spacing + 0.5 * spacing], axis=-1)
+    volumes = np.where(whole, spacing * spacing, 0.0)
+    for k in np.flatnonzero(cut):
+        x, y = column[k] * spacing, row[k] * spacing
+        square = np.array([(x, y), (x + spacing, y), (x + spacing, y + spacing), (x, y + spacing)])
+        positions[k], volumes[k] = centroid(clip(square, outline))
+    return in_order(positions, volumes, cell, spacing)
+
+
+def in_order(positions: np.ndarray, volumes: np.ndarray, cell: float, spacing: float) -> tuple[np.ndarray, np.ndarray]:
+    """Order points row by row of cells from the base, without slivers, which are below a millionth of a square."""
+    kept = volumes > 1e-6 * spacing * spacing
+    positions, volumes = positions[kept], volumes[kept]
     cells = np.floor(positions / cell + 1e-9).astype(int)
     order = np.lexsort((cells[:, 0], cells[:, 1]))
     return positions[order], volumes[order]
+
+
+def _each_corner(values: np.ndarray) -> np.ndarray:
+    """Values at the four corners of each square, shape (4, rows, columns, ...), from those at all corners."""
+    return np.stack([values[:-1, :-1], values[:-1, 1:], values[1:, :-1], values[1:, 1:]])
 
 
 def clip(polygon: np.ndarray, outline: np.ndarray) -> np.ndarray:
@@ -122,7 +99,3 @@ def _distances(outline: np.ndarray, places: np.ndarray) -> np.ndarray:
     along = along / np.linalg.norm(along, axis=1, keepdims=True)
     offset = places[..., None, :] - outline
     return along[:, 0] * offset[..., 1] - along[:, 1] * offset[..., 0]
-
-
-def _whole_cells(extent: float, cell: float) -> float:
-    return ceil(extent / cell - 1e-9) * cell
