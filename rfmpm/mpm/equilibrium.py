@@ -30,7 +30,6 @@ FALL = 0.8  # to which the least of a period falls in the next one at least, whe
 LONGEST = 40.0  # periods until a body that is still not in equilibrium is taken for one that fails
 RAMP, STAGES = 4.0, 40  # periods in which gravity is raised, and its stages
 SETTLED = 1e-4  # out of balance to which a ramp goes on, as long as it falls
-LARGEST_OUT_OF_BALANCE = 0.03  # that a body may start with whose strength is the same everywhere
 
 
 class Relaxation(NamedTuple):
