@@ -26,12 +26,11 @@ from rfmpm.mpm.state import FORCE_X, FORCE_Y, RUNNING, Grid, Progress, start
 SINKING = 1e-3  # of a cell: gamma H^2 / E with the scaled stiffness
 CRITICAL_SHARE = 0.25  # of the damping that is critical
 BALANCED = 1e-3  # out of balance below which a body is in equilibrium
-LOOK = 0.5  # periods from one look to the next
-FALL = 0.8  # what is out of balance falls at least to this share within a period where there is an equilibrium
+LOOKS = 4  # within a period
+FALL = 0.8  # to which the least of a period falls in the next one at least, where there is an equilibrium
 LONGEST = 40.0  # periods until a body that is still not in equilibrium is taken for one that fails
 RAMP, STAGES = 4.0, 40  # periods in which gravity is raised, and its stages
 SETTLED = 1e-4  # out of balance to which a ramp goes on, as long as it falls
-LARGEST_OUT_OF_BALANCE = 0.03  # that a body may start with whose strength is the same everywhere
 
 
 class Relaxation(NamedTuple):
@@ -110,13 +109,13 @@ def relax(body: Relaxation, now: Progress, limit: float = BALANCED) -> Verdict:
     Returns:
         The verdict.
     """
-    seen, within_a_period = [], round(1.0 / LOOK)
+    seen = []
     while True:
-        now = follow(body, now, LOOK)
+        now = follow(body, now, 1.0 / LOOKS)
         seen.append(out_of_balance(body.own.grid, body.scene.walls, body.scene.controls.gravity))
         stands = now.status == RUNNING and seen[-1] < limit
-        falls = len(seen) <= within_a_period or seen[-1] < FALL * seen[-1 - within_a_period]
-        if stands or not falls or now.status != RUNNING or len(seen) * LOOK >= LONGEST:
+        falls = len(seen) < 2 * LOOKS or min(seen[-LOOKS:]) < FALL * min(seen[-2 * LOOKS : -LOOKS])
+        if stands or not falls or now.status != RUNNING or len(seen) >= LONGEST * LOOKS:
             return Verdict(stands, seen[-1], _displacement(body), now.step_count)
 
 

@@ -2,9 +2,11 @@
 
 Zienkiewicz, Humpheson and Lewis (1975), on the points, grid, walls and law of the simulation, with the peak strength of
 a realisation and without softening (`rfmpm.mpm.equilibrium`). A body stands at a factor if its forces come into balance
-to a thousandth of its weight; it fails if, before that, what is out of balance no longer falls by a fifth within the
-period of a shear wave four times as long as the body is high. A failing body then flows at a speed at which the damping
-takes what strength lacks, and what is out of balance stays proportional to that lack.
+to a thousandth of its weight. It fails if, before that, the least that is out of balance within a period, that of a
+shear wave four times as long as the body is high, is no longer a fifth below that of the period before. A failing body
+then flows at a speed at which the damping takes what strength lacks, and what is out of balance stays proportional to
+that lack: a thousandth of the weight of a short slope is half a per cent of its strength, and correspondingly more
+where most of the body never moves.
 
 Trials go from factors at which the body stands, each from the state of the last one that did (warm start), to the first
 at which it fails; the bracket is then halved, in the logarithm. Friction of the base is a property of the boundary: it

@@ -229,7 +229,7 @@ REFUSED = {
     "random_field.cohesion.data": ["borings.csv", [3], [{"x_m": 1.0, "y_m": 2.0}], [{"x_m": 1, "y_m": 2, "value": 0}]],
     "random_field.cohesion.measurement_error": [-0.1, 2.1, INF, NAN],
     "time.end_s": [0, -1, INF, NAN, None],
-    "time.initial_stress": ["k0"],
+    "time.initial_stress": ["isotropic"],
     "time.scheme": ["implicit"],
     "time.step_fraction": [0, 1.01, NAN],
     "quantities.displacement_threshold_m": [0, -0.5, INF, NAN],
