@@ -98,3 +98,11 @@ def probabilities() -> Write:
     from rfmpm.benchmark.probabilities.document import run
 
     return run
+
+
+@command
+def safety() -> Write:
+    """Factors of safety against published ones, and against the displacements of the same fields: safety.md."""
+    from rfmpm.benchmark.safety.document import run
+
+    return run

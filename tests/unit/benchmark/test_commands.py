@@ -10,6 +10,7 @@ REPORTS = {
     "slope": ["How wrong is the run-out", "softening averaged half as often", "over a length, and viscosity"],
     "verification": ["sliding block on an incline", "axial vibration of an elastic bar: phase"],
     "fields": ["| circulant |", "| ar1 |", "Asked: at most 30 ms"],
+    "safety": ["| 45 degrees, base at 1 H | Taylor (1937) |", "safety_rows.csv", "base holds, strength stays"],
     "savings": ["grid cells that no point touches", "imports that `rfmpm check` does not use"],
 }
 FILES = {"slope": "slope_error"}

@@ -1,0 +1,118 @@
+"""The same random fields judged twice: by their factor of safety, and by how far they move in the simulation."""
+
+from collections.abc import Callable
+from math import inf
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rfmpm.realisation import prepare, simulate
+from rfmpm.study import load_study
+
+CELL = 0.5  # [m]
+COUNT, COUNT_OF_OTHERS = 500, 100
+DISPLACEMENTS = (0.5, 2.0, 5.0)  # [m]
+STUDY = {
+    "study": {"name": "factor of safety against displacement", "seed": 20160901},
+    "geometry": {"kind": "slope", "height_m": 5.0, "crest_m": 10.0, "angle_deg": 45.0, "foreland_m": 25.0},
+    "discretisation": {"cell_m": CELL, "points_per_cell": 4, "shape": "quadratic_bspline"},
+    "boundary": {"base": {"kind": "friction", "coefficient": 0.3}, "sides": {"kind": "roller"}},
+    "material": [
+        {
+            "name": "clay",
+            "law": "von_mises",
+            "unit_weight_kn_m3": 20.0,
+            "youngs_modulus_kpa": 1000.0,
+            "poissons_ratio": 0.33,
+            "cohesion_kpa": 20.0,
+            "residual_cohesion_kpa": 4.0,
+            "softening_modulus_kpa": 50.0,
+            "softening_length_m": 0.5,
+            "viscosity_kpa_s": 0.3,
+        }
+    ],
+    "random_field": {
+        "cohesion": {
+            "material": "clay",
+            "distribution": "lognormal",
+            "coefficient_of_variation": 0.25,
+            "correlation": "markov_separable",
+            "scale_of_fluctuation_h_m": 6.0,
+            "scale_of_fluctuation_v_m": 1.0,
+            "method": "cholesky",
+        }
+    },
+    "time": {"end_s": 40.5},
+    "quantities": {"factor_of_safety": "bishop"},
+    "output": {"directory": "unused"},
+}
+HOLDS = {"boundary.base": {"kind": "fixed"}}
+KEEPS = {"material.0.residual_cohesion_kpa": 20.0}
+SCENES = {  # what else may decide, taken away
+    "as it is": {},
+    "base holds": HOLDS,
+    "strength stays": KEEPS,
+    "base holds, strength stays": {**HOLDS, **KEEPS},
+}
+COLUMNS = ("scene", "index", "factor", "displacement", "failure_volume", "run_out")
+
+
+class Row(NamedTuple):
+    """One field in one scene."""
+
+    scene: str
+    index: int
+    factor: float  # by Bishop, of the peak strength [-]
+    displacement: float  # largest of all material points [m]
+    failure_volume: float  # [m3/m]
+    run_out: float  # [m]
+
+
+def study_of(scene: str) -> Any:
+    """The study of a scene."""
+    return load_study(STUDY).with_changes(SCENES[scene])
+
+
+def measure(quick: bool, tell: Callable[[str], None]) -> list[Row]:
+    """Simulate every field in every scene.
+
+    Args:
+        quick: a few fields only.
+        tell: is told the progress, line by line.
+
+    Returns:
+        The rows.
+    """
+    rows = []
+    for number, scene in enumerate(SCENES):
+        count = 4 if quick else COUNT_OF_OTHERS if number else COUNT
+        prepared = prepare(study_of(scene))
+        for index in range(count):
+            outcome = simulate(prepared, index)
+            moved = np.hypot(outcome.points["displacement_x"], outcome.points["displacement_y"])
+            found = outcome.quantities
+            numbers = (found["factor_of_safety"], moved.max(), found["failure_volume"], found["run_out"])
+            rows.append(Row(scene, index, *map(float, numbers)))
+        tell(f"{count} fields, {scene}: done")
+    return rows
+
+
+def write_rows(rows: list[Row], path: Path) -> None:
+    """Keep the rows as a table of comma-separated values."""
+    lines = [",".join([row.scene.replace(",", ";"), *(f"{value:.6g}" for value in row[1:])]) for row in rows]
+    path.write_text("\n".join([",".join(COLUMNS), *lines]) + "\n", encoding="utf-8")
+
+
+def shares(rows: list[Row], scene: str, least: float = inf) -> dict[str, float]:
+    """Shares of the fields of a scene, the first so many: weak by the factor, moved, and both ways of disagreeing."""
+    own = [row for row in rows if row.scene == scene and row.index < least]
+    weak = np.array([row.factor < 1.0 for row in own])
+    moved = np.array([row.displacement > DISPLACEMENTS[0] for row in own])
+    return {
+        "fields": len(own),
+        "weak": float(weak.mean()),
+        "moved": float(moved.mean()),
+        "safe_but_moved": float((~weak & moved).mean()),
+        "weak_but_still": float((weak & ~moved).mean()),
+    }
