@@ -94,7 +94,9 @@ class Stratified:
         """Number of runs after n, where the interval is looked at again; None to end."""
         if n >= self.most:
             return None
-        end = self.rounds(rows)[-1].stop
+        end = self.pilot_size
+        while end <= n:
+            end *= 2  # see `rounds`
         if self.question.is_open_ended:
             excess = self.question.excess(self.estimate(rows))
             if excess <= 1.0:
