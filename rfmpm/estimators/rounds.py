@@ -59,10 +59,6 @@ class Round:
         """Number of the stratum that realisations are in."""
         return (index - self.start) % self.chance.size
 
-    def counts(self, n: int) -> np.ndarray:
-        """How many of the first n realisations of the round each stratum gets, shape (strata,)."""
-        return (n + self.chance.size - 1 - np.arange(self.chance.size)) // self.chance.size
-
     @property
     def gain(self) -> float:
         """How many plain runs have the variance of one of this round, if the fit is right; 1 for plain ones."""

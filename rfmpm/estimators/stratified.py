@@ -12,7 +12,7 @@ import numpy as np
 from scipy.special import betaincinv
 
 from rfmpm.estimators.curves import Band
-from rfmpm.estimators.linear import falling, pooled
+from rfmpm.estimators.linear import FEW, falling, pooled
 from rfmpm.estimators.monte_carlo import Estimate, missing
 from rfmpm.estimators.protocol import Runs
 from rfmpm.estimators.question import Question
@@ -170,8 +170,9 @@ class Stratified:
         confidence = self.question.confidence
         lower, _ = weighted_shares(weight, count, n, strata.chance, confidence)
         _, upper = weighted_shares(weight, count + failed, n, strata.chance, confidence)
-        notes = _notes(own)
-        used = int(n.sum())
+        notes, used, seen = _notes(own), int(n.sum()), int(count.sum())
+        if strata.weight.size > 1 and seen < FEW:
+            notes.append(f"{seen} of {used} exceed: the upper bound rests on the fit that set the strata")
         return Estimate(value, lower, upper, confidence, used, self.method, "; ".join(notes), error)
 
 

@@ -33,10 +33,10 @@ def test_is_unbiased_and_covers_in_short(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("probability", [0.3, 0.02, 1e-3])
+@pytest.mark.parametrize("probability", [0.02, 1e-3])
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_is_unbiased_and_covers(name, probability):
-    check(name, probability, 1100 if probability < 0.01 else MOST, 200)
+    check(name, probability, 1100 if probability < 0.01 else MOST, 150)
 
 
 def test_a_tenth_of_plain_runs_gives_a_small_probability_to_a_third():
@@ -132,6 +132,7 @@ def test_never_and_always_have_intervals_with_width(value, expected, noise):
     assert found.value == pytest.approx(expected, abs=1e-12)  # identity
     assert 0.0 <= found.lower <= found.value <= found.upper <= 1.0
     assert found.upper > found.lower
+    assert ("0 of 400 exceed: the upper bound rests on the fit" in found.note) == (noise and value == 0.0)
 
 
 def answer(values, is_censored=None):

@@ -17,7 +17,7 @@ from rfmpm.estimators.chains import PLAIN
 
 FEATURES = 50
 MOST = 1100
-REPEATS = 100
+REPEATS = 40
 LEVEL = {1e-3: 190, 1e-5: 110}  # runs of a level of subset simulation: two go as far within MOST
 
 
