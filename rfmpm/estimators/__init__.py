@@ -7,6 +7,7 @@ from rfmpm.estimators.plain import MonteCarlo
 from rfmpm.estimators.question import Exceedances, Given, Question, Value
 from rfmpm.estimators.replicated import Replicated
 from rfmpm.estimators.rows import Rows
+from rfmpm.estimators.stratified import Stratified
 from rfmpm.estimators.subset_simulation import SubsetSimulation
 
 ESTIMATORS = {
@@ -14,6 +15,7 @@ ESTIMATORS = {
     "replicated": Replicated,
     "multilevel": Multilevel,
     "control_variate": ControlVariate,
+    "stratified": Stratified,
     "subset_simulation": SubsetSimulation,
 }
 
@@ -29,6 +31,7 @@ __all__ = [
     "Question",
     "Replicated",
     "Rows",
+    "Stratified",
     "SubsetSimulation",
     "Value",
     "contiguous_prefix",

@@ -5,10 +5,12 @@ from typing import TYPE_CHECKING
 
 from rfmpm.estimators import ControlVariate, Estimate, MonteCarlo, Multilevel, Replicated, Rows
 from rfmpm.estimators.protocol import Estimator
+from rfmpm.estimators.stratified import Stratified
 from rfmpm.estimators.subset_simulation import SubsetSimulation
 from rfmpm.planning.components import FieldFeatures, directions_of
 from rfmpm.planning.questions import question_of
 from rfmpm.study.question_checks import saltelli_size
+from rfmpm.study.question_models import TOWARDS_LIMIT
 
 if TYPE_CHECKING:
     from rfmpm.sampling import Sampler
@@ -18,8 +20,8 @@ NOT_DIVISIBLE = (
     'without study.until and with estimator.sampling = "random"'
 )
 NOT_AGAIN = (
-    "later realisations of subset_simulation follow from those that failed, as they failed; run the campaign anew with "
-    "--fresh"
+    "later realisations of subset_simulation and stratified follow from those that failed, as they failed; run the "
+    "campaign anew with --fresh"
 )
 
 
@@ -41,6 +43,8 @@ def estimator_of(study) -> Estimator:
         if table.sampling == "saltelli":  # base points are the independent ones
             size = saltelli_size(len(study.uncertain), bool(study.random_field))
         return Replicated(question, size, number)
+    if table.method == "stratified":
+        return Stratified(question, FieldFeatures(study), table.pilot_size)
     if has_chains(study):
         return SubsetSimulation(question, table.level_size, table.level_probability)
     levels = len(table.coarser_cells_m or ())
@@ -70,8 +74,8 @@ def is_random(study) -> bool:
 
 
 def has_chains(study) -> bool:
-    """Whether realisations follow from others before them."""
-    return study.estimator is not None and study.estimator.method == "subset_simulation"
+    """Whether realisations follow from others before them, nearer to the limit in question."""
+    return study.estimator is not None and study.estimator.method in TOWARDS_LIMIT
 
 
 def is_divisible(study) -> bool:
@@ -94,9 +98,11 @@ def sampler_of(study, prepared, store: Path | None = None) -> "Sampler":
         StudyError: if the fields have too many variables for their principal components to be found.
         OSError: if the store cannot be written.
     """
-    from rfmpm.sampling import SAMPLERS, MarkovChains, Saltelli
+    from rfmpm.sampling import SAMPLERS, MarkovChains, Saltelli, StratifiedVectors
 
     table, seed, count = study.estimator, study.study.seed, prepared.n_variables
+    if table.method == "stratified":
+        return StratifiedVectors(directions_of(study, prepared, store), question_of(study), table.pilot_size)
     if has_chains(study):
         return MarkovChains(seed, count, estimator_of(study))
     scalars = len(prepared.uncertain)

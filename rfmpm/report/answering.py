@@ -67,7 +67,7 @@ class Answers:
     def _asking(self, **changes):
         if changes and self.has_chains:  # which answer their own question alone
             plain = replace(self.question, half_width=None, relative_half_width=None, **changes)
-            return estimators.MonteCarlo(plain, self.study.estimator.level_size)
+            return estimators.MonteCarlo(plain, self.study.estimator.fair_size)
         estimator = copy(self._estimator)
         estimator.question = replace(self.question, **changes)
         return estimator

@@ -127,7 +127,7 @@ def _more(s: Standing) -> str:
 
 
 def _or_rare(s: Standing) -> str:
-    rare = ', or look for the rare with method = "subset_simulation" in [estimator]'
+    rare = ', or look for the rare with method = "stratified" in [estimator]'
     return rare if s.beyond < 0.1 * s.completed else ""
 
 

@@ -10,8 +10,8 @@ from rfmpm.study.question_checks import saltelli_size
 def usable(dataset, study=None):
     """Return the rows with indices 0, 1, 2, ... up to the first gap, in this order (xarray.Dataset).
 
-    Only simulations on the study's own cells count. Those of a part of a study begin with its own first index. Of
-    subset simulation, whose later levels look for the rare on purpose, the first level alone is a fair sample.
+    Only simulations on the study's own cells count. Those of a part of a study begin with its own first index. Where
+    later ones look for the rare on purpose, the first ones alone are a fair sample.
 
     Args:
         dataset: the ensemble.
@@ -24,8 +24,8 @@ def usable(dataset, study=None):
         dataset = dataset.sortby("realisation")
     count = estimators.contiguous_prefix(indices - first_index(dataset))
     design = None if study is None else study.estimator
-    if design is not None and design.method == "subset_simulation":
-        count = min(count, design.level_size)
+    if design is not None and design.fair_size is not None:
+        count = min(count, design.fair_size)
     return dataset.isel(realisation=slice(count))
 
 

@@ -11,6 +11,7 @@ PHYSICS = (
     *("ground", "kernel_tools", "mpm", "random_fields", "quantities", "stability", "observer.py"),
     *("initial_state.py", "preparation.py", "realisation.py", "seeds.py", "uncertainty.py"),
     *("sampling", "estimators/chains.py", "estimators/subset_simulation.py"),  # which random vector is whose
+    *("estimators/rounds.py", "estimators/stratified.py", "estimators/regression.py", "estimators/surrogate.py"),
 )
 LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4")
 

@@ -6,7 +6,7 @@ from math import isclose
 
 from rfmpm.study.errors import Problem
 from rfmpm.study.known import Known, path_of, problem
-from rfmpm.study.question_models import DEFAULTS, READERS, reads
+from rfmpm.study.question_models import DEFAULTS, READERS, TOWARDS_LIMIT, reads
 
 UNTIL, OWN = "study.until", "estimator"
 UNIT = {"failure_volume": "m3_per_m", "initial_failure_volume": "m3_per_m"}  # of all others: m
@@ -14,7 +14,7 @@ WIDTHS = ("half_width", "half_width_m", "half_width_m3_per_m", "relative_half_wi
 FIXED = "must be left out together with study.until, which says when to end"
 FEWEST_REPLICATES = 8  # Student's factor is then 2.36; with 4 it is 3.18
 FEWEST_SUBSETS = 2  # independent subset simulations: their scatter shows what the chains of one do not
-WITH_QUESTION = ("multilevel", "control_variate", "subset_simulation")
+WITH_QUESTION = ("multilevel", "control_variate", *TOWARDS_LIMIT)
 
 
 def _has_question(known: Known) -> bool:
@@ -90,7 +90,7 @@ def _method_has_what_it_needs(known: Known) -> Iterator[Problem]:
         yield problem(known, f"{OWN}.method", "needs coarser_cells_m, such as twice the cells of the study")
     if method == "control_variate" and not has_coarser and known[f"{OWN}.principal_components"] is None:
         yield problem(known, f"{OWN}.method", "needs coarser_cells_m or principal_components, or both")
-    if method == "subset_simulation" and _has_question(known) and not _asks_for_a_probability(known):
+    if method in TOWARDS_LIMIT and _has_question(known) and not _asks_for_a_probability(known):
         text = "finds a probability of exceeding: ask for exceeds_m or exceeds_m3_per_m in study.until"
         yield problem(known, f"{OWN}.method", text)
     if sampling == "saltelli" and not known["uncertain"]:
@@ -142,6 +142,16 @@ def _chains_fit(known: Known) -> Iterator[Problem]:
     most = known[f"{UNTIL}.at_most"] if _has_question(known) else None
     if most is not None and most < FEWEST_SUBSETS * size:
         text = f"must be at least {FEWEST_SUBSETS * size}: the first levels of {FEWEST_SUBSETS} subset simulations"
+        yield problem(known, f"{UNTIL}.at_most", text)
+
+
+def _pilot_fits(known: Known) -> Iterator[Problem]:
+    if (chosen := _estimator(known)) is None or chosen[0] != "stratified":
+        return
+    size = known[f"{OWN}.pilot_size"] or DEFAULTS["pilot_size"]
+    most = known[f"{UNTIL}.at_most"] if _has_question(known) else None
+    if most is not None and most < 2 * size:
+        text = f"must be at least {2 * size}: the plain realisations of stratified, and as many that follow from them"
         yield problem(known, f"{UNTIL}.at_most", text)
 
 
@@ -209,5 +219,6 @@ QUESTION_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _method_has_what_it_needs,
     _design_is_whole,
     _chains_fit,
+    _pilot_fits,
     _cells_are_coarser,
 ]

@@ -51,7 +51,7 @@ class Question(Table):
 class Estimation(Table):
     """[estimator]: how a campaign answers; left out: plain Monte Carlo"""
 
-    method: Literal["monte_carlo", "multilevel", "control_variate", "subset_simulation"] = Field(
+    method: Literal["monte_carlo", "multilevel", "control_variate", "stratified", "subset_simulation"] = Field(
         "monte_carlo", description="What the answer is made of"
     )
     sampling: Literal["random", "latin_hypercube", "sobol", "saltelli"] = Field(
@@ -65,8 +65,11 @@ class Estimation(Table):
     )
     principal_components: Annotated[Count, Field(ge=1, le=10_000)] | None = Field(
         None,
-        description="Leading components of the fields that a design fixes (default: 32), or that control_variate takes "
-        "(default: none)",
+        description="Leading components of the fields that a design fixes or stratified looks for its direction in "
+        "(default: 32), or that control_variate takes (default: none)",
+    )
+    pilot_size: Annotated[Count, Field(ge=20, le=LARGEST_COUNT)] | None = Field(
+        None, description="Plain realisations from which stratified finds its first direction. Default: 100"
     )
     level_size: Annotated[Count, Field(ge=10, le=LARGEST_COUNT)] | None = Field(
         None, description="Realisations of one level of subset_simulation. Default: 500"
@@ -74,6 +77,11 @@ class Estimation(Table):
     level_probability: Annotated[Number, Field(gt=0, le=0.5)] | None = Field(
         None, description="Share of a level of subset_simulation from which the next one starts [1]. Default: 0.1"
     )
+
+    @property
+    def fair_size(self) -> int | None:
+        """First realisations that are a fair sample where later ones are sought near the limit; None: all are."""
+        return {"stratified": self.pilot_size, "subset_simulation": self.level_size}.get(self.method)
 
     def model_post_init(self, context: object) -> None:
         """Fill in what the method reads and is not given, without counting it among the given keys."""
@@ -86,11 +94,19 @@ class Estimation(Table):
                 object.__setattr__(self, key, default)
 
 
-DEFAULTS = {"replicate_size": 64, "principal_components": 32, "level_size": 500, "level_probability": 0.1}
+DEFAULTS = {
+    "replicate_size": 64,
+    "principal_components": 32,
+    "pilot_size": 100,
+    "level_size": 500,
+    "level_probability": 0.1,
+}
+TOWARDS_LIMIT = ("stratified", "subset_simulation")  # methods whose realisations follow from others, nearer the limit
 READERS = {
     "coarser_cells_m": ("multilevel", "control_variate"),
     "replicate_size": ("latin_hypercube", "sobol"),
-    "principal_components": ("latin_hypercube", "sobol", "control_variate"),
+    "principal_components": ("latin_hypercube", "sobol", "control_variate", "stratified"),
+    "pilot_size": ("stratified",),
     "level_size": ("subset_simulation",),
     "level_probability": ("subset_simulation",),
 }

@@ -30,7 +30,7 @@ from rfmpm.study.models import (
     Quantities,
     Time,
 )
-from rfmpm.study.question_models import Estimation
+from rfmpm.study.question_models import TOWARDS_LIMIT, Estimation
 from rfmpm.study.schema import Hint
 from rfmpm.study.uncertain_checks import CAPPED
 from rfmpm.study.uncertain_models import Uncertain
@@ -110,7 +110,7 @@ class Study(Table):
             (content[tables[0]] if tables else content).pop(key, None)
         if self.estimator == Estimation():  # plain Monte Carlo, as without the table
             del content["estimator"]
-        elif self.estimator and self.estimator.method == "subset_simulation":  # its chains run towards the limit
+        elif self.estimator and self.estimator.method in TOWARDS_LIMIT:
             content["estimator"]["aim"] = {
                 key: aim[key] for key in aim if key == "quantity" or key.startswith("exceeds")
             }

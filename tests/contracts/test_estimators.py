@@ -46,7 +46,7 @@ def check(name: str, question: str, n: int | None, repeats: int = REPEATS, **wid
 
 
 def test_every_entry_has_a_model_problem():
-    own_tests = {"subset_simulation"}  # rare events, chains instead of independent units
+    own_tests = {"stratified", "subset_simulation"}  # rare events, whose realisations follow from those before them
     assert {name.split(",")[0] for name in MAKERS} == set(ESTIMATORS) - own_tests
 
 

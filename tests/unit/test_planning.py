@@ -56,13 +56,14 @@ def test_without_a_question_it_is_that_of_the_run_out_limit(study):
         (DESIGN, estimators.Replicated),
         ({"method": "multilevel", "coarser_cells_m": [1.0]}, estimators.Multilevel),
         ({"method": "control_variate", "principal_components": 3}, estimators.ControlVariate),
+        ({"method": "stratified"}, estimators.Stratified),
         ({"method": "subset_simulation"}, SubsetSimulation),
     ],
 )
 def test_each_method_has_its_estimator(study, estimator, kind):
     asked = asking(study, CHANCE, **estimator)
     assert type(planning.estimator_of(asked)) is kind
-    assert planning.is_random(asked) == (kind not in (estimators.Replicated, SubsetSimulation))
+    assert planning.is_random(asked) == (kind not in (estimators.Replicated, estimators.Stratified, SubsetSimulation))
     assert not planning.is_divisible(asked)
 
 

@@ -53,6 +53,9 @@ def study():
         ),
         ({"estimator": LEVELS, "study.until": None}, "needs a question"),
         ({"estimator": {"method": "subset_simulation"}, "study.until": MEAN}, "finds a probability of exceeding"),
+        ({"estimator": {"method": "stratified"}, "study.until": MEAN}, "finds a probability of exceeding"),
+        ({"estimator": {"method": "stratified"}, "study.until.at_most": 199}, "must be at least 200"),
+        ({"estimator": {"method": "stratified", "level_size": 50}}, "is read by subset_simulation alone"),
         ({"estimator": LEVELS | {"coarser_cells_m": [0.25]}}, "must be larger than the cells before it, 0.25 m"),
         ({"estimator": LEVELS | {"coarser_cells_m": [1.0, 0.5]}}, "must be larger than the cells before it, 1 m"),
         (
@@ -72,7 +75,7 @@ def test_refusals(study, changes, sentence):
     assert sentence in str(refusal.value)
 
 
-@pytest.mark.parametrize("estimator", [LEVELS, {"sampling": "sobol"}, {"method": "subset_simulation"}, {}])
+@pytest.mark.parametrize("estimator", [LEVELS, {"sampling": "sobol"}, {"method": "stratified"}, {}])
 def test_defaults_that_are_written_out_are_read_again(study, estimator):
     asked = study.with_changes({"estimator": estimator})
     assert rfmpm.load_study(asked.to_toml()) == asked
@@ -95,8 +98,9 @@ def test_the_question_is_no_physics_and_the_estimator_is(study):
     assert narrower.physics_hash == designed.physics_hash
 
 
-def test_the_limit_is_physics_where_chains_run_towards_it(study):
-    rare = study.with_changes({"estimator": {"method": "subset_simulation"}})
+@pytest.mark.parametrize("method", ["stratified", "subset_simulation"])
+def test_the_limit_is_physics_where_realisations_are_sought_near_it(study, method):
+    rare = study.with_changes({"estimator": {"method": method}})
     assert rare.with_changes({"study.until.half_width": 0.01}).physics_hash == rare.physics_hash
     assert rare.with_changes({"study.until.exceeds_m": 9.0}).physics_hash != rare.physics_hash
 

@@ -7,13 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from rfmpm.benchmark.probabilities import rare, slope
+from rfmpm.benchmark.probabilities import model_problems, rare, slope, stratified
 from rfmpm.benchmark.probabilities.bank import columns
 from rfmpm.benchmark.probabilities.cases import COMPONENTS, NUMBERS, REPLICATE, studies
 from rfmpm.benchmark.probabilities.picture import draw
 from rfmpm.benchmark.probabilities.repeats import Bank, Judged, judge, repeats
 from rfmpm.benchmark.probabilities.slope import QUESTIONS, Reference, makers
-from rfmpm.benchmark.probabilities.text import TEXT
+from rfmpm.benchmark.probabilities.text import RARE, TEXT
+from rfmpm.study import Study
 
 SIZES = (32, 64, 128)  # realisations on 0.25 m cells
 COVERED = 128  # of them for the table of coverage
@@ -60,11 +61,35 @@ def run(folder: Path, quick: bool, tell: Callable[[str], None]) -> Path:
         components=COMPONENTS,
         coarse="\n".join(coarse),
         small=_small(small, len(found["coarse"].run_out)),
+        rare=rare_section(folder, cases["coarse"], small, quick, tell),
+        subset_most=rare.AT_MOST,
+        **rare.SIZES,
         subsets="\n".join(_subsets(subsets, small)),
         plain=round((1.0 - small.probability) / small.probability / 0.3**2),
     )
     path.write_text(text, encoding="utf-8")
     return path
+
+
+def rare_section(folder: Path, study: Study, small: rare.Small, quick: bool, tell: Callable[[str], None]) -> str:
+    """Write what the report says of stratified sampling: on the slope, and on model problems beside other ways.
+
+    Args:
+        folder: that holds the rows of its campaigns, or gets them.
+        study: on the coarse cells.
+        small: the probability in question.
+        quick: one campaign, few repeats: a look at the machinery.
+        tell: is told the progress.
+    """
+    chosen = stratified.SEEDS[:1] if quick else stratified.SEEDS
+    found = list(stratified.campaigns(study, small.limit, chosen, folder, tell))
+    return RARE.format(
+        at_most=stratified.AT_MOST,
+        stratified="\n".join(stratified.lines(found, chosen, small)),
+        repeats=2 if quick else model_problems.REPEATS,
+        most=model_problems.MOST,
+        problems="\n".join(model_problems.table(2 if quick else model_problems.REPEATS, tell)),
+    )
 
 
 Found = dict[str, dict[str, dict[int, Judged]]]  # by question, estimator and number of realisations
@@ -165,9 +190,7 @@ def _coarse(banks: dict[str, Bank], number: int, tell: Callable[[str], None]) ->
 def _small(small: rare.Small, number: int) -> str:
     return (
         f"P(run-out > {small.limit:g} m) on cells of 0.5 m is {small.probability:.2e} by the {number} independent "
-        f"realisations (95 % interval {small.lower:.2e} to {small.upper:.2e}). Subset simulation, levels of "
-        f"{rare.SIZES['level_size']} realisations, of which {rare.SIZES['level_probability']:.0%} start the next one, "
-        f"at most {rare.AT_MOST} in all:"
+        f"realisations (95 % interval {small.lower:.2e} to {small.upper:.2e})."
     )
 
 

@@ -23,10 +23,11 @@ class Small(NamedTuple):
     probability: float
     lower: float
     upper: float
+    count: int  # rows that exceed the limit
 
 
 class Found(NamedTuple):
-    """One subset simulation."""
+    """One campaign."""
 
     value: float
     lower: float
@@ -39,7 +40,7 @@ def limit_of(run_out: np.ndarray) -> Small:
     limit = round(float(np.quantile(run_out, 1.0 - WANTED)), 1)
     count, n = int(np.sum(run_out > limit)), len(run_out)
     lower, upper = (float(bound) for bound in clopper_pearson(count, n))
-    return Small(limit, count / n, lower, upper)
+    return Small(limit, count / n, lower, upper, count)
 
 
 def subset_simulations(

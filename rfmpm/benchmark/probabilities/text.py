@@ -36,9 +36,29 @@ Reference: {coarse_rows} independent realisations. Designs are drawn in whole re
 
 ## A small probability
 
-{small}
+{small} Plain Monte Carlo needs {plain} realisations for a relative error of 30 % of it.
+
+{rare}
+
+### Subset simulation on the slope
+
+Levels of {level_size} realisations, of which {level_probability:.0%} start the next one, at most {subset_most} in all:
 
 {subsets}
-
-Plain Monte Carlo needs {plain} realisations for a relative error of 30 % of such a probability.
 """
+
+RARE = """\
+### Stratified sampling on the slope
+
+`method = "stratified"`, at most {at_most} realisations, cells of 0.5 m; rows in `probabilities_rare_rows.nc`.
+
+{stratified}
+
+### Model problems with known probabilities
+
+{most} realisations at most, {repeats} campaigns of each; relative root-mean-square error and coverage of the 95 %
+intervals. Quantities are functions of 51 standard-normal numbers, of which the features hold 50. Where a direction
+in the features drives the quantity, stratified sampling errs least; where none does it is plain Monte Carlo, and subset
+simulation, which needs no direction, is the better choice.
+
+{problems}"""

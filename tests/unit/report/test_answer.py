@@ -65,7 +65,7 @@ def test_few_beyond_the_limit_and_the_back_of_the_model_are_warned_of():
     assert few.startswith("The answer rests on 3 simulations beyond the limit")
     assert back.startswith("In 10 realisations of 64 the failure reached the back of the model, 10 m behind")
     assert "geometry.crest_m, now 10 m" in numbers.next_steps[0]
-    assert "subset_simulation" in numbers.next_steps[1]
+    assert 'method = "stratified"' in numbers.next_steps[1]
 
 
 def test_the_budget_adds_the_cells_and_says_which_error_is_larger():
