@@ -6,6 +6,8 @@ from math import inf
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from rfmpm.benchmark.safety.cases import Case, all_cases
 from rfmpm.benchmark.safety.fields import DISPLACEMENTS, SCENES, Row, measure, shares, write_rows
 from rfmpm.benchmark.safety.peer import Peer, compare
@@ -47,17 +49,21 @@ def run(folder: Path, quick: bool, tell: Callable[[str], None]) -> Path:
     write_rows(rows, folder / "safety_rows.csv")
     examples = draw_fields(rows, folder / "safety.png", folder / "safety_examples.png")
     path = folder / "safety.md"
-    text = REPORT.format(
+    path.write_text(in_words(lines, peer_in_words(compare()), rows, examples), encoding="utf-8")
+    return path
+
+
+def in_words(lines: list[str], peer: str, rows: list[Row], examples: str) -> str:
+    """Make the text of the report from the lines of its first table, the second, and the rows of the fields."""
+    return REPORT.format(
         cases="\n".join(lines),
-        peer=_peer_in_words(compare()),
+        peer=peer,
         scenes="\n".join(_scene_line(rows, scene) for scene in SCENES),
         strengths="\n".join(_strength_line(rows, name, factor) for name, factor in STRENGTHS.items()),
         displacements="\n".join(_displacement_line(rows, limit) for limit in DISPLACEMENTS),
         examples=examples,
         **_headline(rows),
     )
-    path.write_text(text, encoding="utf-8")
-    return path
 
 
 STRENGTHS = {"peak": 1.0, "mean of peak and residual": 0.5 * (1.0 + RATIO), "residual": RATIO}
@@ -108,7 +114,7 @@ def _scene_line(rows: list[Row], scene: str) -> str:
     found = shares(rows, scene, first)
     return (
         f"| {scene} | {found['fields']} | {found['weak']:.2f} | {found['moved']:.2f} | {found['safe_but_moved']:.2f} "
-        f"| {found['weak_but_still']:.2f} |"
+        f"| {found['weak_but_still']:.2f} | {found['parting']:.2f} |"
     )
 
 
@@ -126,7 +132,12 @@ def _headline(rows: list[Row]) -> dict[str, str]:
     found = shares(rows, "as it is")
     own = [row for row in rows if row.scene == "as it is" and row.displacement > DISPLACEMENTS[0]]
     still = [row.factor for row in rows if row.scene == "as it is" and row.displacement <= DISPLACEMENTS[0]]
+    equal = float(np.quantile([row.factor for row in rows if row.scene == "as it is"], found["moved"]))
+    both = [row for row in rows if row.scene == list(SCENES)[-1]]
+    stood = [row.factor for row in both if row.factor < 1.0 and row.displacement <= DISPLACEMENTS[0]]
     return {
+        "share": f"{100.0 / equal:.0f}",
+        "lowest_that_stopped": f"{min(stood, default=1.0):.2f}",
         "count": str(found["fields"]),
         "weak": f"{found['weak']:.2f}",
         "moved": f"{found['moved']:.2f}",
@@ -137,7 +148,7 @@ def _headline(rows: list[Row]) -> dict[str, str]:
     }
 
 
-def _peer_in_words(peers: list[Peer]) -> str:
+def peer_in_words(peers: list[Peer]) -> str:
     if not peers:
         return "No other package is installed here (`pip install pyslope` for the comparison)."
     lines = ["| case | rfmpm, bishop | ms | pyslope, bishop | ms | times as long |", "|---|---|---|---|---|---|"]

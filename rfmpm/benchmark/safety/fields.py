@@ -105,7 +105,7 @@ def write_rows(rows: list[Row], path: Path) -> None:
 
 
 def shares(rows: list[Row], scene: str, least: float = inf) -> dict[str, float]:
-    """Shares of the fields of a scene, the first so many: weak by the factor, moved, and both ways of disagreeing."""
+    """Shares of the first fields of a scene: weak by the factor, moved, both ways of disagreeing; what parts them."""
     own = [row for row in rows if row.scene == scene and row.index < least]
     weak = np.array([row.factor < 1.0 for row in own])
     moved = np.array([row.displacement > DISPLACEMENTS[0] for row in own])
@@ -115,4 +115,13 @@ def shares(rows: list[Row], scene: str, least: float = inf) -> dict[str, float]:
         "moved": float(moved.mean()),
         "safe_but_moved": float((~weak & moved).mean()),
         "weak_but_still": float((weak & ~moved).mean()),
+        "parting": parting(own),
     }
+
+
+def parting(rows: list[Row]) -> float:
+    """The factor below which most of those that moved lie, and above which most of those that did not."""
+    factor = np.array([row.factor for row in rows])
+    moved = np.array([row.displacement > DISPLACEMENTS[0] for row in rows])
+    candidates = np.linspace(0.8, 1.6, 81)
+    return float(candidates[np.argmin([np.sum((factor < candidate) != moved) for candidate in candidates])])

@@ -9,7 +9,7 @@ Made by `rfmpm benchmark safety`.
 A factor divides the whole strength. On circles: the least over circular surfaces. Any shape: the least over circles and
 over lines of twelve corners that start from circles, whole or cut off at a level, and are moved where the factor falls.
 In brackets the error against the known factor, or against the nearer end of its range. Milliseconds: processor time of
-one search, which reads the soil of its points from nothing but three arrays, as beside every realisation of a campaign.
+one search on one core, the fastest of three, as beside every realisation of a campaign.
 
 | case | known from | known | method | on circles | any shape | ms |
 |---|---|---|---|---|---|---|
@@ -35,9 +35,9 @@ Cells of 0.5 m; cohesion lognormal, mean 20 kPa, coefficient of variation 0.25, 
 the peak strength on circles; a slope has moved where a material point has by more than 0.5 m. The rows are in
 [safety_rows.csv](safety_rows.csv).
 
-P(factor < 1) = {weak}, P(displacement > 0.5 m) = {moved}. Above 1 and moved: {safe_but_moved} of all. Below 1 and still
+P(factor < 1) = {weak}, P(displacement > 0.5 m) = {moved}. Above 1 and moved: {safe_but_moved} of all; below 1 and still
 there: {weak_but_still}. The highest factor of a slope that moved is {highest_that_moved}, the lowest of one that stood
-{lowest_that_stood}.
+is {lowest_that_stood}.
 
 ![Factor of safety against largest displacement in four scenes](safety.png)
 
@@ -48,25 +48,32 @@ there: {weak_but_still}. The highest factor of a slope that moved is {highest_th
 Two things that the simulation knows and the factor does not can be taken away, each alone and both: the friction of 0.3
 on the base, and the loss of strength from 20 to 4 kPa. The first fields, the same in each scene:
 
-| scene | fields | P(factor < 1) | P(displacement > 0.5 m) | above 1, moved | below 1, still |
-|---|---|---|---|---|---|
+| scene | fields | P(factor < 1) | P(displacement > 0.5 m) | above 1, moved | below 1, still | parted best at |
+|---|---|---|---|---|---|---|
 {scenes}
 
-The fall from one row to the next is what each of the two explains; what then still disagrees is close to a factor of 1,
-or comes from the sudden release, from the shape of the surface (no circle is the worst one in a random field), and from
-strength lost to the cells.
+Parted best at: the factor that most of those that moved are below and most of those that did not are above. With both
+taken away the factor is right: who moves is below 1, and who is below 1 without moving half a metre has a factor of
+{lowest_that_stopped} or more; a slope that keeps its strength stops as its face flattens. So the two
+judge one slope, and differ by what the factor leaves out:
 
-Which strength to put into the factor? Residual strength is a fifth of the peak at every point here, and without
-friction the factor is proportional to strength, so that the three factors are those of the peak times 1, 0.6 and 0.2:
+- The base. The factor takes it to hold; the body as it is slides on it.
+- Peak strength against progressive failure. The factor adds up the peak of every place on the surface, as if all were
+  reached at once. Here a place that has reached its peak loses strength before the others reach theirs, and hands its
+  load on. Where strength stays, slopes that move do so by about a metre; where it is lost, by ten, and there is hardly
+  anything in between: a slope stays as it is or goes all the way.
+
+Which strength to put into the factor, then? Residual strength is a fifth of the peak at every point here, and without
+friction the factor is proportional to strength, so that the factors are those of the peak times 1, 0.6 and 0.2:
 
 | strength | mean factor | P(factor < 1) |
 |---|---|---|
 {strengths}
 
-The peak is not reached everywhere at once: soil at the toe has softened before that at the crest has yielded. The mean
-strength is none of the soil's, but shows the side on which the truth lies.
+The peak is too favourable, residual strength and the mean of both condemn every slope. At {share} % of the peak as many
+have a factor below 1 as move; that share belongs to this soil and this base, and no factor says how far a slope goes.
 
 ![Fields that the two judge differently: strength with the critical circle, and where they ended](safety_examples.png)
 
-Left the strength and the critical circle, right the end of the simulation. {examples}.
+The safest of the slopes that moved. Left the strength and the critical circle, right the end: {examples}.
 """
