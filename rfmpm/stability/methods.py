@@ -11,6 +11,7 @@ from rfmpm.stability.limit_equilibrium import Critical, critical_surface
 from rfmpm.stability.section import Section, Side, sides_of
 
 STRENGTH_OF = {"sqrt_j2": 1.0, "sqrt_3j2": 1.0 / sqrt(3.0)}  # undrained shear strength over cohesion
+FIRM = 1e12  # cohesion of what never yields [Pa]: any surface through it has a factor beyond all others
 
 
 class Strength(NamedTuple):
@@ -64,17 +65,19 @@ def strength_of(prepared: Any, fields: Mapping[str, np.ndarray]) -> Strength:
         fields: of the realisation by name, shape (n,) each, in SI units; what is missing is the material's own.
 
     Returns:
-        The strength. An undrained one is the cohesion, by the material's convention, without friction.
+        The strength. An undrained one is the cohesion, by the material's convention, without friction; what is elastic
+        never yields.
 
     Raises:
-        ValueError: the material has none.
+        ValueError: nothing yields.
     """
     soils, points = prepared.scene.soils, prepared.scene.points
-    for number, material in enumerate(soils.materials):
-        if material.law == "elastic":
-            raise ValueError(f'material.{number}.law = "elastic": has no strength, hence no factor of safety')
-    own = soils.of_each([material.cohesion_kpa * 1e3 for material in soils.materials])
+    if all(material.law == "elastic" for material in soils.materials):
+        raise ValueError('material.0.law = "elastic": has no strength, hence no factor of safety')
+    own = soils.of_each([getattr(material, "cohesion_kpa", 0.0) * 1e3 for material in soils.materials])
     cohesion = fields.get("cohesion", own) * soils.of_each([_per_cohesion(material) for material in soils.materials])
+    yields = soils.of_each([float(material.law != "elastic") for material in soils.materials])
+    cohesion = np.where(yields > 0.0, cohesion, FIRM)
     angles = [radians(getattr(material, "friction_angle_deg", 0.0)) for material in soils.materials]
     angle = fields["friction_angle"] if "friction_angle" in fields else soils.of_each(angles)
     # Where a law has no friction, its field says so with something that is not a number.

@@ -94,10 +94,10 @@ def _softening_does_not_snap_back(known: Known) -> Iterator[Problem]:
 def _factor_of_safety_needs_strength(known: Known) -> Iterator[Problem]:
     if not known["quantities.factor_of_safety"]:
         return
-    for index in range(len(known["material"])):
-        if known[f"material.{index}.law"] == "elastic":
-            text = f'needs strength, which material.{index} with law = "elastic" has none of: leave it out'
-            yield problem(known, "quantities.factor_of_safety", text)
+    laws = {known[f"material.{index}.law"] for index in range(len(known["material"]))}
+    if laws == {"elastic"}:
+        text = 'needs a material with strength, which law = "elastic" has none of: leave it out'
+        yield problem(known, "quantities.factor_of_safety", text)
 
 
 def _k0_is_given_where_it_counts(known: Known) -> Iterator[Problem]:

@@ -76,7 +76,23 @@ def test_strength_is_the_material_s_or_the_field_s():
     assert own.friction_angle == pytest.approx(np.full(count, radians(20.0)), rel=1e-12)
     assert own.unit_weight == pytest.approx(np.full(count, 20e3), rel=1e-12)
     field = np.linspace(0.2, 0.5, count)
-    assert strength_of(prepared, {"friction_angle": field}).friction_angle is field
+    np.testing.assert_array_equal(strength_of(prepared, {"friction_angle": field}).friction_angle, field)
+
+
+def test_what_is_elastic_holds_the_surface_up():
+    given = drained("bishop").model_dump(exclude_unset=True)
+    clay = given["material"][0]
+    kept = ("unit_weight_kn_m3", "youngs_modulus_kpa", "poissons_ratio")
+    rock = {"name": "rock", "law": "elastic", **{key: clay[key] for key in kept}}
+    given["geometry"]["foundation_m"] = 3.0
+    soft = prepare(load_study(given))
+    given["geometry"]["foundation_material"] = "rock"
+    given["material"] = [clay, rock]
+    firm = prepare(load_study(given))
+    weak, strong = (METHODS["bishop"](prepared, {}) for prepared in (soft, firm))
+    toe = firm.scene.body.outline[:, 1].max() - given["geometry"]["height_m"]
+    assert strong.surface[:, 1].min() > toe - 0.25  # half a square of a material point
+    assert strong.factor >= weak.factor
 
 
 def test_an_elastic_soil_has_none():
@@ -85,10 +101,12 @@ def test_an_elastic_soil_has_none():
     given["material"] = [{"law": "elastic", **{key: given["material"][0][key] for key in kept}}]
     given["random_field"] = {}
     given["quantities"] = {"factor_of_safety": True}
-    with pytest.raises(StudyError, match=r'quantities\.factor_of_safety = true: needs strength.*"elastic"'):
+    with pytest.raises(
+        StudyError, match=r'quantities\.factor_of_safety = true: needs a material with strength.*"elastic"'
+    ):
         load_study(given)
 
 
 def test_an_unknown_method_is_refused_with_the_choices():
-    with pytest.raises(StudyError, match=r'"bishop", "spencer", "morgenstern_price", true \(did you mean "bishop"'):
+    with pytest.raises(StudyError, match=r'"morgenstern_price", "strength_reduction", true \(did you mean "bishop"'):
         study(**{"quantities.factor_of_safety": "bishops"})
