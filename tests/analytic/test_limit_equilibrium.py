@@ -5,7 +5,7 @@ from math import radians
 import numpy as np
 import pytest
 
-from rfmpm.benchmark.safety.cases import DRAINED, acads, drained, taylor
+from rfmpm.benchmark.safety.cases import DRAINED, acads, drained, face, taylor
 from rfmpm.benchmark.safety.document import error_of
 from rfmpm.benchmark.safety.spiral import stability_number
 from rfmpm.stability import Section, critical_surface, factor_along, sides_of
@@ -81,3 +81,13 @@ def test_the_circle_of_fredlund_and_krahn(method, factor):
     angle = np.linspace(start, end, 65)
     circle = np.column_stack([120.0 + 80.0 * np.sin(angle), 90.0 - 80.0 * np.cos(angle)])
     assert factor_along(side, *soil, circle, method) == pytest.approx(factor, rel=0.005)
+
+
+@pytest.mark.parametrize(("cohesion", "factor"), [(0.1e3, 0.66), (1.8e3, 1.0)])
+def test_a_slope_of_44_degrees_has_both_factors_of_toro_rojas(cohesion, factor):
+    # Toro Rojas et al., Morgenstern-Price: friction 30 degrees, 2200 kg/m3. Their height is not given; about 44 degrees
+    # and 3 to 3.5 m fit, in the middle of which both come out. One per cent: factors of two digits.
+    section = face(44.0, 3.25, 2.0, 13.0, 0.125)
+    soil = [np.full(len(section.points), value) for value in (cohesion, radians(30.0), 2200.0 * 9.81)]
+    found = critical_surface(sides_of(section), *soil, "morgenstern_price")
+    assert found.factor == pytest.approx(factor, rel=0.01)
