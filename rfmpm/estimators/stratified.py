@@ -171,7 +171,7 @@ class Stratified:
         lower, _ = weighted_shares(weight, count, n, strata.chance, confidence)
         _, upper = weighted_shares(weight, count + failed, n, strata.chance, confidence)
         notes, used, seen = _notes(own), int(n.sum()), int(count.sum())
-        if strata.weight.size > 1 and seen < FEW:
+        if np.unique(strata.chance).size > 1 and seen < FEW:  # else no fit was made
             notes.append(f"{seen} of {used} exceed: the upper bound rests on the fit that set the strata")
         return Estimate(value, lower, upper, confidence, used, self.method, "; ".join(notes), error)
 

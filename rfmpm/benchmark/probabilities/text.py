@@ -57,8 +57,9 @@ RARE = """\
 ### Model problems with known probabilities
 
 {most} realisations at most, {repeats} campaigns of each; relative root-mean-square error and coverage of the 95 %
-intervals. Quantities are functions of 51 standard-normal numbers, of which the features hold 50. Where a direction
-in the features drives the quantity, stratified sampling errs least; where none does it is plain Monte Carlo, and subset
-simulation, which needs no direction, is the better choice.
+intervals. Quantities are functions of 51 standard-normal numbers, of which the features hold 50. Stratified sampling
+errs least where one direction drives the quantity and the probability is not far below 1e-3; where none does it is as
+plain Monte Carlo. Subset simulation, which needs no direction, is the choice there, where the limit state bends in
+several directions, and for much smaller probabilities.
 
 {problems}"""
