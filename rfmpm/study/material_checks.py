@@ -92,10 +92,15 @@ def _softening_does_not_snap_back(known: Known) -> Iterator[Problem]:
 
 
 def _factor_of_safety_needs_strength(known: Known) -> Iterator[Problem]:
-    if not known["quantities.factor_of_safety"]:
+    """Of every material; for strength reduction, which moves the whole body, that of one of them is enough."""
+    method = known["quantities.factor_of_safety"]
+    if not method:
         return
-    for index in range(len(known["material"])):
-        if known[f"material.{index}.law"] == "elastic":
+    laws = [known[f"material.{index}.law"] for index in range(len(known["material"]))]
+    if method == "strength_reduction" and set(laws) != {"elastic"}:
+        return
+    for index, law in enumerate(laws):
+        if law == "elastic":
             text = f'needs strength, which material.{index} with law = "elastic" has none of: leave it out'
             yield problem(known, "quantities.factor_of_safety", text)
 
