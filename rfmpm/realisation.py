@@ -198,12 +198,12 @@ def initial_balance(prepared: Prepared) -> float:
         Unbalanced over gravity's forces on the nodes [-].
 
     Raises:
-        StudyError: if it is large, unless strength varies, which would be no fault of the study's.
+        StudyError: if it is large, unless strength varies or soil is cut away: neither is a fault of the study's.
     """
     scene = prepared.scene
     own = scenes.release(scene, typical_strengths(prepared))
     _, _, ratio = begin(prepared.study, scene, own, start(), threads=1)
-    if not prepared.n_variables:
+    if not prepared.n_variables and prepared.scene.removed is None:
         refuse_large(prepared.study, ratio)
     return ratio
 
@@ -271,7 +271,7 @@ def _simulate(
     balance = {}
     if study.time.initial_stress != "elastic":
         scene, now, balance["out_of_balance"] = begin(study, scene, own, now, threads)
-        if not prepared.n_variables:
+        if not prepared.n_variables and prepared.scene.removed is None:
             refuse_large(study, balance["out_of_balance"])
     advance, arguments = SOLVERS[study.time.scheme], scenes.arguments(scene, own, threads)
     motion = Motion(study, own.points) if keep_motion and study.history else None

@@ -128,7 +128,8 @@ def _stress_at_rest(
         _together([part.density for part in parts]),
     )
     mass = density * volume
-    still = Unreleased(shape.outline, position, mass, volume, axes, walls, lame, shear, GRAVITY, averaged)
+    soil = np.concatenate([np.repeat(np.arange(len(part.counts)), part.counts) for part in parts])
+    still = Unreleased(shape.outline, soil, position, mass, volume, axes, walls, lame, shear, GRAVITY, averaged)
     stress = INITIAL_STRESSES[study.time.initial_stress](still, study)
     return Tensor(*(component[: sum(counts)] for component in stress))
 

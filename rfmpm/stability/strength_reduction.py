@@ -11,6 +11,10 @@ where most of the body never moves.
 Trials go from factors at which the body stands, each from the state of the last one that did (warm start), to the first
 at which it fails; the bracket is then halved, in the logarithm. Friction of the base is a property of the boundary: it
 is not reduced. Tensile strength given by a cut-off is not reduced either.
+
+Against limit analysis with 20 cells to the height: a short slope on a firm base 0.4 % more, on a base with friction of
+0.3 2 % less; with 24, drained soil with associated flow 2 % more, with no dilation 1 to 3 % less. Rock as a foundation
+holds the soil within a cell of it: 5 % more, of first order in the cell.
 """
 
 from math import log, sqrt

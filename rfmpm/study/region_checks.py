@@ -139,12 +139,8 @@ def _cuts_leave_a_body(known: Known) -> Iterator[Problem]:
 
 
 def _initial_stress_suits_the_regions(known: Known) -> Iterator[Problem]:
-    kind = known["time.initial_stress"]
-    if kind == "k0" and len(known["material"]) > 1:
-        text = 'is for ground of one material: take "elastic" or "gravity_ramp"'
-        yield problem(known, "time.initial_stress", text)
-    if kind != "elastic" and known["geometry.kind"] != "block" and known["geometry.cut"]:
-        text = 'cannot be found with soil that is then cut: take "elastic", or leave geometry.cut out'
+    if known["time.initial_stress"] == "gravity_ramp" and known["geometry.kind"] != "block" and known["geometry.cut"]:
+        text = 'cannot be found with soil that is then cut: take "elastic" or "k0", or leave geometry.cut out'
         yield problem(known, "time.initial_stress", text)
 
 

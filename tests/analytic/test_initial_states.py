@@ -64,6 +64,41 @@ def test_k0_follows_the_ground_surface():
     np.testing.assert_allclose(points.stress.yy, -WEIGHT * (surface - points.position.y), rtol=0.0, atol=1e-12 * WEIGHT)
 
 
+def layered(start, **more):
+    upper = {"name": "upper", "material": "soil", "corners_m": [[0, 2], [4, 2], [4, 3], [0, 3]]}
+    lower = {"name": "lower", "material": "rock", "corners_m": [[0, 0], [4, 0], [4, 2], [0, 2]]}
+    rock = {
+        "name": "rock",
+        "law": "elastic",
+        "unit_weight_kn_m3": 25.0,
+        "youngs_modulus_kpa": 1e5,
+        "poissons_ratio": 0.2,
+    }
+    geometry = {"kind": "regions", "foreland_m": 0.0, "region": [upper, lower]} | more
+    level = ground(GROUND, start)
+    return level.with_changes({"geometry": geometry, "material": [level.material[0], rock]})
+
+
+def test_k0_of_two_layers_is_that_of_each_under_the_weight_of_both():
+    scene = scenes.build(layered("k0"))
+    y = scene.points.position.y
+    upper = y > 2.0
+    weight = np.where(upper, 20e3 * (3.0 - y), 20e3 + 25e3 * (2.0 - y))
+    np.testing.assert_allclose(scene.points.stress.yy, -weight, rtol=1e-12)
+    np.testing.assert_allclose(scene.points.stress.xx, -np.where(upper, 0.5, 0.25) * weight, rtol=1e-12)
+
+
+def test_k0_knows_of_soil_that_is_cut_away():
+    cut = {"cut": [{"corners_m": [[3, 2.5], [4, 2.5], [4, 3], [3, 3]]}]}
+    scene = scenes.build(layered("k0", **cut))
+    x, y = scene.points.position
+    below = (x > 3.0) & (y > 2.0)
+    np.testing.assert_allclose(scene.points.stress.yy[below], -20e3 * (3.0 - y[below]), rtol=1e-12)
+    assert rfmpm.simulate(layered("k0", **cut)).quantities["out_of_balance"] > 0.05
+    with pytest.raises(StudyError, match="then cut"):
+        layered("gravity_ramp", **cut)
+
+
 @pytest.mark.parametrize("start", ["elastic", "k0", "gravity_ramp"])
 def test_level_ground_without_cohesion_stays_where_it_is(start):
     # What is out of balance lies in the uppermost row of cells: its weight alone settles by (h / H)^2 of the scale.

@@ -54,6 +54,25 @@ def test_short_slope_on_a_base_with_friction():
     assert found(short_slope(0.25, {"kind": "friction", "coefficient": 0.3})).factor == pytest.approx(SLIDING, rel=0.03)
 
 
+def test_elastic_foundation_becomes_a_rough_base_as_cells_get_finer():
+    """Shape functions reach across the interface, so that rock holds the soil within a cell of it: first order."""
+    rock = {
+        "name": "rock",
+        "law": "elastic",
+        "unit_weight_kn_m3": 20.0,
+        "youngs_modulus_kpa": 1e4,
+        "poissons_ratio": 0.2,
+    }
+    errors = []
+    for cell in (0.5, 0.25):
+        on_base = short_slope(cell)
+        foundation = {"geometry.foundation_m": 1.0, "geometry.foundation_material": "rock"}
+        study = on_base.with_changes(foundation | {"material": [on_base.material[0], rock]})
+        study = study.with_changes({"quantities.factor_of_safety": "strength_reduction"})
+        errors.append(found(study).factor / ROUGH - 1.0)
+    assert 0.0 < errors[1] < 0.6 * errors[0]
+
+
 def test_drained_slope_comes_down_to_limit_analysis_as_cells_get_finer():
     """Associated flow, as limit analysis has it; divided by the factor, the strength is the critical one."""
     height, factor = 3.0, 1.25
@@ -118,5 +137,5 @@ def test_soil_that_cannot_fail_is_refused():
         "name": "x", "law": "elastic", "unit_weight_kn_m3": 20.0, "youngs_modulus_kpa": 1e4, "poissons_ratio": 0.33
     }  # fmt: skip
     changes = {"material.0": elastic, "quantities.factor_of_safety": "strength_reduction"}
-    with pytest.raises(rfmpm.StudyError, match=r"quantities\.factor_of_safety.*that can fail"):
+    with pytest.raises(rfmpm.StudyError, match=r"quantities\.factor_of_safety.*needs strength"):
         short_slope(1.0).with_changes(changes)

@@ -10,7 +10,7 @@ import numpy as np
 
 from rfmpm.kernel_tools import Tensor
 from rfmpm.mpm.boundary import Walls
-from rfmpm.mpm.initial_stress.at_rest import k0_stress, lateral_coefficient, no_stress
+from rfmpm.mpm.initial_stress.at_rest import k0_stress, lateral_coefficients, no_stress, weight_above
 from rfmpm.mpm.initial_stress.elastic import elastic_gravity_stress, interpolation
 from rfmpm.mpm.state import Axes
 
@@ -19,6 +19,7 @@ class Unreleased(NamedTuple):
     """A body before it has stresses."""
 
     outline: np.ndarray  # (k, 2) corners [m]
+    soil: np.ndarray  # (n,) number of each point's material
     position: np.ndarray  # (n, 2) [m]
     mass: np.ndarray  # (n,) [kg/m]
     volume: np.ndarray  # (n,) [m3/m]
@@ -32,13 +33,13 @@ class Unreleased(NamedTuple):
 
 def elastic(body: Unreleased, study) -> Tensor:
     """One elastic static solve on the grid."""
-    return elastic_gravity_stress(*body[1:])
+    return elastic_gravity_stress(*body[2:])
 
 
 def k0(body: Unreleased, study) -> Tensor:
     """Level ground: weight above, and a share of it sideways."""
-    unit_weight = body.gravity * body.mass / body.volume
-    return k0_stress(body.position, body.outline, unit_weight, lateral_coefficient(study))
+    overburden = weight_above(study, body.outline, body.position)
+    return k0_stress(overburden, lateral_coefficients(study)[body.soil])
 
 
 def gravity_ramp(body: Unreleased, study) -> Tensor:
