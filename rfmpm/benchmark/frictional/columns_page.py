@@ -6,8 +6,8 @@ import numpy as np
 
 from rfmpm.benchmark.frictional import columns
 from rfmpm.benchmark.frictional.cases import Section, finding, table
-from rfmpm.report.slope_figures import WIDTH, draw_panel
-from rfmpm.report.style import BLUE, ORANGE, drawing, new_figure, save
+from rfmpm.report.slope_figures import WIDTH
+from rfmpm.report.style import BLUE, GREY, ORANGE, drawing, new_figure, save
 
 COUNTS = (10, 20)  # cells in the half width
 OUTLINE = np.array([(0.0, 0.0), (0.09, 0.0), (0.09, 0.63), (0.0, 0.63)])  # of the column of 2268 points [m]
@@ -37,17 +37,12 @@ def planar(folder: Path) -> Section:
 def stages(folder: Path) -> Section:
     """Run the column of 2268 points to each of its times and draw it."""
     outcomes = [columns.stage(time) for time in columns.TIMES]
-    rows = []
-    with drawing():
-        figure = new_figure(WIDTH, 3.0)
-        panels = figure.subplots(1, len(outcomes))
-        for axes, time, theirs, outcome in zip(panels, columns.TIMES, columns.EXPERIMENT, outcomes, strict=True):
-            p = outcome.points
-            axes.set_title(f"{time:g} s")
-            draw_panel(figure, axes, p, p["plastic_strain"], OUTLINE, FRAME, (0.0, STRAIN), "plastic strain [-]")
-            far, high = p["x"].max(), p["y"].max()
-            rows.append(f"{time:g} | {theirs:g} | {len(p['x'])} | {far:.3f} | {high:.3f} | {outcome.wall_time:.1f}")
-        save(figure, folder / "frictional_stages.png")
+    rows = [
+        f"{time:g} | {theirs:g} | {len(one.points['x'])} | {one.points['x'].max():.3f} | {one.points['y'].max():.3f} "
+        f"| {one.wall_time:.1f}"
+        for time, theirs, one in zip(columns.TIMES, columns.EXPERIMENT, outcomes, strict=True)
+    ]
+    _draw_stages(outcomes, folder / "frictional_stages.png")
     head = "time [s] | in the experiment [s] | points | furthest point [m] | highest point [m] | run time [s]"
     is_whole = all(len(outcome.points["x"]) == 2268 and outcome.status == "not_at_rest" for outcome in outcomes)
     return Section(
@@ -65,6 +60,20 @@ def _draw_run_outs(found, path: Path) -> None:
             axes.loglog(columns.ASPECTS, ours, "o", ms=4, color=colour, label=f"cells of L0 / {count}")
         axes.set(xlabel="height over half width, a", ylabel="run-out over half width")
         axes.legend()
+        save(figure, path)
+
+
+def _draw_stages(outcomes, path: Path) -> None:
+    with drawing():
+        figure = new_figure(WIDTH, 3.2)
+        panels = figure.subplots(1, len(outcomes), sharey=True)
+        for axes, time, outcome in zip(panels, columns.TIMES, outcomes, strict=True):
+            p = outcome.points
+            cloud = axes.scatter(p["x"], p["y"], c=p["plastic_strain"], s=2.0, lw=0, vmin=0.0, vmax=STRAIN)
+            axes.plot(*OUTLINE.T, color=GREY, lw=1.0, ls="--")
+            axes.set(title=f"{time:g} s", xlabel="x [m]", xlim=FRAME[:2], ylim=FRAME[2:], aspect="equal")
+        panels[0].set_ylabel("y [m]")
+        figure.colorbar(cloud, ax=panels, label="plastic strain [-]", extend="max")
         save(figure, path)
 
 

@@ -143,7 +143,7 @@ def _costs(same: Cost, many: Cost) -> str:
         f"Cells of 0.2 m: {same.cells} with soil, {same.points} points, {same.steps} steps for {END:g} s; "
         f"{same.preparing:.1f} s to prepare, {same.stepping:.1f} s to run. Cells of {1e3 * slope.AS_MANY:.1f} mm: "
         f"{many.cells}, {many.points} points; {many.preparing:.0f} s to prepare, {many.steps} steps in "
-        f"{many.stepping:.1f} s, from which the whole is reckoned. One core of a shared machine, load "
+        f"{many.stepping:.1f} s, from which the whole is reckoned. Processor time, one core, load of the machine "
         f"{os.getloadavg()[0]:.1f}."
     )
 
