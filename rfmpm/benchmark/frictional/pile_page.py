@@ -135,6 +135,7 @@ What governs it:
   cells of 10 mm is that of two errors.
 - The stress at the start, stiffness, wall, law, points per cell and time step matter less than friction. GIMP and
   4-node squares come closer on these cells, with a shorter front; no shape comes within 1.7 mm. Were 19.8 degrees the
-  ratio of stresses in a shear box, in which soil without dilation shows tan = sin(phi), phi would be 21.1 degrees. Friction that rises with the rate of shear would add some more; the published law has none, nor has ours.
+  ratio of stresses in a shear box, in which soil without dilation shows tan = sin(phi), phi would be 21.1 degrees.
+  Friction that rises with the rate of shear would add some more; the published law has none, nor has ours.
 - So the surface is missed, by every reading. The study keeps 19.8 degrees.
 """
