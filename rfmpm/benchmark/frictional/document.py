@@ -1,0 +1,42 @@
+"""The page: frictional.md with its pictures."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from rfmpm.benchmark.frictional import columns_page, pile_page, slope_page
+from rfmpm.benchmark.frictional.cases import table
+
+SECTIONS = (pile_page.section, columns_page.planar, columns_page.stages, slope_page.section)
+
+
+def write(folder: Path, command: str, tell: Callable[[str], None]) -> Path:
+    """Run everything and write the page.
+
+    Args:
+        folder: where frictional.md and its pictures go; made if missing.
+        command: that makes the page, to be named in it.
+        tell: is told what each section comes to, line by line.
+
+    Returns:
+        The page's path.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    texts, findings = [], []
+    for section in SECTIONS:
+        found = section(folder)
+        texts.append(found.text)
+        findings += found.findings
+        for line in found.findings:
+            tell(line)
+    path = folder / "frictional.md"
+    head = HEAD.format(command=command, rows=table("what | published or asked | ours | ", findings))
+    path.write_text("\n".join([head, *texts]), encoding="utf-8")
+    return path
+
+
+HEAD = """# Frictional soil against what was published
+
+Made by `{command}`.
+
+{rows}
+"""
