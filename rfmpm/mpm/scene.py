@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rfmpm.ground import height_at
 from rfmpm.kernel_tools import Tensor, Vector, zeros
 from rfmpm.mpm.boundary import WALLS, Walls
 from rfmpm.mpm.cells import Cells, make_cells
@@ -211,6 +212,12 @@ def toe_x(study) -> float:
 def crest_edge_x(study) -> float:
     """Coordinate of the crest's edge before it moves [m]."""
     return body(study).crest_edge
+
+
+def ground_height(study, x: np.ndarray) -> np.ndarray:
+    """Height of the ground beyond the toe before it moves, at some x, same shape [m]."""
+    ground = body(study).ground
+    return np.zeros_like(x) if ground is None else height_at(ground, x)
 
 
 def domain_size(study) -> tuple[float, float]:
