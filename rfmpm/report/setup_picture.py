@@ -35,6 +35,11 @@ def write_setup_picture(study: Any, path: Path) -> None:
         for cut in getattr(study.geometry, "cut", None) or ():
             corners = np.array(cut.corners_m)
             axes.fill(*corners.T, fill=False, hatch="///", edgecolor=VERMILION, linewidth=1.0, label="cut at the start")
+        for load in study.load or ():
+            label = f"load {load.pressure_kpa:g} kPa"
+            axes.plot([load.from_m, load.to_m], 2 * [shape.top * 0.985], color="black", linewidth=4.0, label=label)
+        for obstacle in study.obstacle or ():
+            axes.fill(*np.array(obstacle.corners_m).T, color="black", label=f"obstacle, friction {obstacle.friction:g}")
         _draw_domain(axes, study, shape)
         for x, name in ((shape.crest_edge, "crest edge"), (shape.toe, "toe")):
             axes.axvline(x, color=VERMILION, linestyle=":", linewidth=1.0)
