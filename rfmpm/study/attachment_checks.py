@@ -7,8 +7,6 @@ from rfmpm.study.bodies import geometry_of, regions_in, size_of
 from rfmpm.study.errors import Problem
 from rfmpm.study.known import Known, path_of, problem
 
-CLEAR = 2  # cells between soil and an obstacle, which the initial stresses do not know
-
 
 def _loads_lie_on_the_ground(known: Known) -> Iterator[Problem]:
     if not known["load"]:
@@ -45,9 +43,8 @@ def _obstacles_stand_clear(known: Known) -> Iterator[Problem]:
             yield Problem(path_of(path), "lies outside the domain: x and y must be at least 0")
         elif shapely.buffer(polygon, -0.5 * cell * (1.0 - 1e-6), join_style="mitre").is_empty:
             yield Problem(path_of(path), f"is thinner than a cell of {cell:g} m: soil would pass between its nodes")
-        elif (away := polygon.distance(body)) < CLEAR * cell * (1.0 - 1e-9):
-            text = f"is {away:.4g} m from the soil: must be at least {CLEAR} cells of {cell:g} m away"
-            yield Problem(path_of(path), text)
+        elif (common := polygon.intersection(body).area) > 1e-3 * cell**2:
+            yield Problem(path_of(path), f"stands in {common:.4g} m2 of soil: it may touch it, or cut it away")
 
 
 ATTACHMENT_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [_loads_lie_on_the_ground, _obstacles_stand_clear]

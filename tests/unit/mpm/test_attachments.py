@@ -86,7 +86,7 @@ def test_a_wall_stops_a_slide():
             "must be greater than from_m",
         ),
         ({"load": [{"from_m": 3.0, "to_m": 99.0, "pressure_kpa": 5.0}]}, "where the soil ends"),
-        ({"obstacle": [{"corners_m": [[6, 0], [8, 0], [8, 2], [6, 2]]}]}, "m from the soil"),
+        ({"obstacle": [{"corners_m": [[6, 0], [8, 0], [8, 2], [6, 2]]}]}, "m2 of soil"),
         ({"obstacle": [{"corners_m": [[9, 0], [9.2, 0], [9.2, 2], [9, 2]]}]}, "is thinner than a cell"),
     ],
 )
