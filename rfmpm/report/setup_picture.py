@@ -37,7 +37,8 @@ def write_setup_picture(study: Any, path: Path) -> None:
             axes.fill(*corners.T, fill=False, hatch="///", edgecolor=VERMILION, linewidth=1.0, label="cut at the start")
         for load in study.load or ():
             label = f"load {load.pressure_kpa:g} kPa"
-            axes.plot([load.from_m, load.to_m], 2 * [shape.top * 0.985], color="black", linewidth=4.0, label=label)
+            x = np.linspace(load.from_m, load.to_m, 50)
+            axes.plot(x, ground_before(shape, x), color="black", linewidth=4.0, label=label, zorder=6)
         for obstacle in study.obstacle or ():
             axes.fill(*np.array(obstacle.corners_m).T, color="black", label=f"obstacle, friction {obstacle.friction:g}")
         _draw_domain(axes, study, shape)
@@ -66,6 +67,16 @@ def _draw_soils(axes: Any, study: Any) -> None:
             label = None
         place = region.polygon.representative_point()
         axes.annotate(region.name, (place.x, place.y), ha="center", va="center", fontsize=7, zorder=4)
+
+
+def ground_before(shape: Any, x: np.ndarray) -> np.ndarray:
+    """Height of the ground at some x, same shape [m]."""
+    from rfmpm.ground import height_at
+
+    if shape.ground is None:
+        corners = [(0.0, shape.height), (shape.crest_edge, shape.height), (shape.toe, 0.0)]
+        return height_at(np.array(corners), x)
+    return height_at(shape.ground, x)
 
 
 def _rings(polygon: Any) -> Iterator[np.ndarray]:
