@@ -3,6 +3,7 @@
 import numpy as np
 
 from rfmpm.motion import Motion
+from rfmpm.mpm.attachments import Obstacle
 from rfmpm.mpm.scene import Scene
 from rfmpm.mpm.soils import plastic_strain_of
 from rfmpm.mpm.state import Points, Progress
@@ -23,10 +24,12 @@ class Observer:
         past: tuple | None,
         frames: int,
         motion: Motion | None = None,
+        obstacle: Obstacle | None = None,
     ):
         self.scene, self.study, self.live, self.past, self.wanted = scene, study, points, past, frames
         names = ("time", "kinetic_energy", "failed_volume") + (("front", "crest") if frames else ())
-        self.history = {name: [] for name in names}
+        self.history = {name: [] for name in (*names, *(("impact_force",) if obstacle else ()))}
+        self.obstacle, self.taken, self.before = obstacle, 0.0, 0.0
         self.frames = [(0.0, self.points())] if frames else []
         self.next_sample = SAMPLE_INTERVAL
         self.motion = motion
@@ -71,6 +74,8 @@ class Observer:
         self.history["kinetic_energy"].append(now.kinetic)
         self.history["failed_volume"].append(float(first.volume[failed].sum()))
         self.next_sample = now.time + SAMPLE_INTERVAL
+        if self.obstacle is not None:
+            self._sample_impact(now.time)
         if self.wanted:
             state = final_state(self.scene, self.study, self.points())
             quantile = self.study.quantities.front_quantile
@@ -79,6 +84,11 @@ class Observer:
             )
             self.history["crest"].append(body.crest_edge - QUANTITIES["retrogression_distance"](state))
             self.frames.append((now.time, self.points()))
+
+    def _sample_impact(self, time: float) -> None:
+        taken = float(self.obstacle.impulse[0])
+        self.history["impact_force"].append((taken - self.taken) / max(time - self.before, 1e-12))
+        self.taken, self.before = taken, time
 
     def kept_frames(self) -> list[tuple[float, dict[str, np.ndarray]]]:
         """Choose the snapshots, evenly spread from the first to the last."""

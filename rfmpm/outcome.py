@@ -57,6 +57,8 @@ def measure(study, scene: scenes.Scene, own, points, observer: Observer, now: Pr
         "time_at_rest": now.time if status == "ok" else nan,
         **energy_shares(now, scene.controls.energy_scale, elastic_energy(own.points, scene.lame, scene.shear)),
     }
+    if study.obstacle:
+        measured["impact_force_peak"] = nan if status in FAILED else max(observer.history["impact_force"])
     if status in FAILED:
         return dict.fromkeys((*names, "initial_failure_volume"), nan) | measured
     state = final_state(scene, study, points)

@@ -275,7 +275,7 @@ def _simulate(
             refuse_large(study, balance["out_of_balance"])
     advance, arguments = SOLVERS[study.time.scheme], scenes.arguments(scene, own, threads)
     motion = Motion(study, own.points) if keep_motion and study.history else None
-    observer, end = Observer(scene, study, own.points, own.history, frames, motion), study.time.end_s
+    observer, end = Observer(scene, study, own.points, own.history, frames, motion, own.obstacle), study.time.end_s
     while now.status == RUNNING and now.time < end:
         look()
         now = advance(now, min(observer.next_look, end), *arguments)

@@ -29,6 +29,10 @@ def _has_surface(study) -> bool:
     return study.output.surface_bin_m is not None
 
 
+def _has_obstacle(study) -> bool:
+    return bool(study.obstacle)
+
+
 def _has_factor(study) -> bool:
     return bool(study.quantities.factor_of_safety)
 
@@ -199,6 +203,15 @@ VARIABLES = _table(
         _has_factor,
     ),
     Variable(
+        "impact_force_peak",
+        ("realisation",),
+        "float64",
+        "N m-1",
+        "largest force on the obstacles per metre of width",
+        {"comment": "Horizontal, to the right positive; the largest mean over 0.1 s of model time, all obstacles."},
+        _has_obstacle,
+    ),
+    Variable(
         "final_surface",
         ("realisation", "x"),
         "float64",
@@ -313,6 +326,13 @@ HISTORY_VARIABLES = _table(
     _point("kinetic_energy", "J m-1", "kinetic energy per metre of width", ("history_time",)),
     _point("front", "m", "horizontal position of the front of the failed mass", ("history_time",)),
     _point("crest", "m", "horizontal position of the crest edge", ("history_time",)),
+    _point(
+        "impact_force",
+        "N m-1",
+        "horizontal force on the obstacles per metre of width, mean since the entry before",
+        ("history_time",),
+        _has_obstacle,
+    ),
     _point("failed_volume", "m3 m-1", "initial volume of the failed set per metre of width", ("history_time",)),
 )
 

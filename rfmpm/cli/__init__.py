@@ -163,6 +163,9 @@ def field(
 def check(
     study: Annotated[Path | None, typer.Argument(metavar="STUDY", help="Study file (TOML).")] = None,
     schema: Annotated[bool, typer.Option("--schema", help="Print the JSON schema of study files.")] = False,
+    picture: Annotated[
+        Path | None, typer.Option("--picture", metavar="FILE", help="Draw the set-up into this PNG file.")
+    ] = None,
 ) -> None:
     """Validate a study: everything that is wrong with it at once."""
     from rfmpm.study import Study, fields_need_making, load_study
@@ -180,6 +183,12 @@ def check(
         if settings.time.initial_stress != "elastic":
             _say_balance(settings, study)
         typer.echo(f"{study}: nothing is wrong", err=schema)
+        if picture is not None:
+            from rfmpm import report
+
+            _writable(picture.parent)
+            report.write_setup_picture(settings, picture)
+            typer.echo(picture)
 
 
 def _make_fields(settings: Any, source: Path) -> None:

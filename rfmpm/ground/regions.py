@@ -103,7 +103,7 @@ def body_polygon(geometry: Any, regions: list[Region]) -> Any:
     import shapely
 
     whole = shapely.union_all([region.polygon for region in regions])
-    for cut in geometry.cut or ():
+    for cut in getattr(geometry, "cut", None) or ():
         whole = shapely.difference(whole, shapely.Polygon(cut.corners_m))
     return whole
 

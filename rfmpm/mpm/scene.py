@@ -7,13 +7,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rfmpm.ground import height_at
 from rfmpm.kernel_tools import Tensor, Vector, zeros
+from rfmpm.mpm.attachments import Load, Obstacle
 from rfmpm.mpm.boundary import WALLS, Walls
 from rfmpm.mpm.cells import Cells, make_cells
 from rfmpm.mpm.energy import elastic_energy
 from rfmpm.mpm.geometry import Body, Filling, body, fill_body
 from rfmpm.mpm.initial_stress import INITIAL_STRESSES, Unreleased
 from rfmpm.mpm.nonlocal_softening import Averaging, averaging
+from rfmpm.mpm.placing import load_of, obstacle_of
 from rfmpm.mpm.shapes import build_axis
 from rfmpm.mpm.soils import GRAVITY, Soils, soils_of, stress_factor
 from rfmpm.mpm.solvers import Alone, Controls, make_team
@@ -39,6 +42,8 @@ class Scene:
     lame: float | np.ndarray  # shape (n,) where there are several materials [Pa]
     shear: float | np.ndarray  # the same [Pa]
     cell_means: bool  # volumetric strain and pressure are means over the points of a cell
+    load: Load | None = None  # on the surface
+    obstacle: Obstacle | None = None
     removed: Filling | None = None  # points that are there when the initial stresses are found, and then cut away
 
 
@@ -75,7 +80,8 @@ def with_parameters(scene: Scene, study) -> Scene:
     """
     stress, points = None, scene.points
     factor = stress_factor(scene.soils, soils_of(study, scene.soils.counts))
-    if study.time.initial_stress == "elastic" and factor is not None:
+    is_scaled = factor is not None and (factor == 1.0 or scene.load is None)
+    if study.time.initial_stress == "elastic" and is_scaled:
         stress = Tensor(*(factor * component for component in points.stress))
     filling = Filling(np.column_stack(points.position), points.volume.copy(), scene.soils.counts)
     return _scene(study, scene.body, scene.axes, filling, scene.removed, stress)
@@ -110,7 +116,8 @@ def _scene(
         energy_scale=elastic_energy(points, lame, shear),
         growth_limit=GROWTH_LIMIT,
     )
-    return Scene(shape, cell, points, axes, walls, controls, soils, lame, shear, averaged, removed)
+    load, obstacle = load_of(study, position), obstacle_of(study, shape)
+    return Scene(shape, cell, points, axes, walls, controls, soils, lame, shear, averaged, load, obstacle, removed)
 
 
 def _stress_at_rest(
@@ -129,6 +136,8 @@ def _stress_at_rest(
     )
     mass = density * volume
     soil = np.concatenate([np.repeat(np.arange(len(part.counts)), part.counts) for part in parts])
+    if (load := load_of(study, filling.position)) is not None:
+        mass[load.point] += load.force / GRAVITY  # it weighs like soil; mass does nothing else here
     still = Unreleased(shape.outline, soil, position, mass, volume, axes, walls, lame, shear, GRAVITY, averaged)
     stress = INITIAL_STRESSES[study.time.initial_stress](still, study)
     return Tensor(*(component[: sum(counts)] for component in stress))
@@ -153,6 +162,8 @@ class Released(NamedTuple):
     grid: Grid
     cells: Cells | None
     averaging: Averaging | None
+    load: Load | None
+    obstacle: Obstacle | None
 
 
 def release(scene: Scene, strengths: Mapping[str, np.ndarray] | None) -> Released:
@@ -172,7 +183,13 @@ def release(scene: Scene, strengths: Mapping[str, np.ndarray] | None) -> Release
     averaged, means = scene.soils.averaged(history), None
     if averaged is not None:
         means = averaging(scene.soils.softening_length, averaged, scene.axes)
-    return Released(copy_points(scene.points), law, history, empty_grid(scene.axes), cells, means)
+    outside = (_copied(scene.load), _copied(scene.obstacle))
+    return Released(copy_points(scene.points), law, history, empty_grid(scene.axes), cells, means, *outside)
+
+
+def _copied(record: tuple | None) -> tuple | None:
+    """A record of arrays that can change without this one."""
+    return None if record is None else type(record)(*(values.copy() for values in record))
 
 
 def arguments(scene: Scene, own: Released, threads: int = 1) -> tuple:
@@ -189,7 +206,7 @@ def arguments(scene: Scene, own: Released, threads: int = 1) -> tuple:
     passes = Alone() if threads == 1 else make_team(threads, own.grid, own.cells)
     return (
         own.points, own.law, own.history, scene.axes, own.grid, own.cells, own.averaging, scene.walls, scene.controls,
-        passes,
+        own.load, own.obstacle, passes,
     )  # fmt: skip
 
 
@@ -212,6 +229,12 @@ def toe_x(study) -> float:
 def crest_edge_x(study) -> float:
     """Coordinate of the crest's edge before it moves [m]."""
     return body(study).crest_edge
+
+
+def ground_height(study, x: np.ndarray) -> np.ndarray:
+    """Height of the ground beyond the toe before it moves, at some x, same shape [m]."""
+    ground = body(study).ground
+    return np.zeros_like(x) if ground is None else height_at(ground, x)
 
 
 def domain_size(study) -> tuple[float, float]:

@@ -32,6 +32,11 @@ class Soils(NamedTuple):
         return np.repeat(np.array(values, dtype=float), self.counts)
 
     @property
+    def of_point(self) -> np.ndarray:
+        """Number of the material of each point, in the order of the study, shape (n,)."""
+        return np.repeat(np.arange(len(self.counts)), self.counts)
+
+    @property
     def elastic_constants(self) -> tuple:
         """First Lame parameter and shear modulus [Pa], shape (n,) or one value each."""
         lame, shear = zip(*(constants_of(material) for material in self.materials), strict=True)

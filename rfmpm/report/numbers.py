@@ -211,15 +211,16 @@ def _inundation(rows, study) -> Band | None:
     """P(deposit depth >= asked depth) in every bin beyond the toe; failed realisations count both ways."""
     if "final_surface" not in rows or not rows.sizes["realisation"]:
         return None
-    from rfmpm.mpm.scene import toe_x
+    from rfmpm.mpm.scene import ground_height, toe_x
 
     distance = rows["x"].values - toe_x(study)
     beyond = distance > 0.0
+    before = ground_height(study, rows["x"].values[beyond])
     surface, failed = rows["final_surface"].values, np.isnan(rows["run_out"].values)
     n, n_failed = failed.size, int(failed.sum())
     count = np.zeros(int(beyond.sum()), int)
     for start in range(0, n, BLOCK):
-        depth = surface[start : start + BLOCK, beyond][~failed[start : start + BLOCK]]
+        depth = surface[start : start + BLOCK, beyond][~failed[start : start + BLOCK]] - before
         count += np.sum(depth >= study.quantities.inundation_depth_m, axis=0)  # NaN, no soil in the bin, is not
     lower, _ = clopper_pearson(count, n, CONFIDENCE)
     _, upper = clopper_pearson(count + n_failed, n, CONFIDENCE)

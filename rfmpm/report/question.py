@@ -48,16 +48,19 @@ def _body(study) -> str:
     geometry = study.geometry
     if geometry.kind == "slope":
         return f"A slope {geometry.height_m:g} m high, inclined at {geometry.angle_deg:g}°,"
+    if geometry.kind == "regions":
+        return f"A body of {len(geometry.region)} regions of {', '.join(one.name for one in study.material)}"
     return f"A block of soil {geometry.width_m:g} m wide and {geometry.height_m:g} m high"
 
 
 def _strength(study) -> str:
     if not study.random_field:
         return "Its strength is the same everywhere and in every realisation."
+    kind = "body" if study.geometry.kind == "regions" else study.geometry.kind
     properties = "; ".join(_random_property(study, name, field) for name, field in study.random_field.items())
     return (
         f"Its strength varies from place to place: {properties}. "
-        f"Each realisation is one such {study.geometry.kind} with its own pattern of weak and strong zones, followed "
+        f"Each realisation is one such {kind} with its own pattern of weak and strong zones, followed "
         f"until it comes to rest, for at most {study.time.end_s:g} s."
     )
 

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from math import sqrt
 
+from rfmpm.study.attachment_checks import ATTACHMENT_CHECKS
 from rfmpm.study.bodies import is_plain_body
 from rfmpm.study.correlation_checks import CORRELATION_CHECKS
 from rfmpm.study.data_checks import DATA_CHECKS
@@ -129,6 +130,7 @@ def _histories_have_names_of_their_own(known: Known) -> Iterator[Problem]:
 CHECKS: list[Check] = [
     _histories_have_names_of_their_own,
     *REGION_CHECKS,
+    *ATTACHMENT_CHECKS,
     *SIZE_CHECKS,
     _residual_is_below_the_peak,
     _softening_does_not_snap_back,

@@ -91,4 +91,19 @@ class RegionsGeometry(Table):
     cut: tuple[Cut, ...] | None = Field(None, description="Soil that is removed when the run begins")
 
 
+class Load(Table):
+    """[[load]]: a pressure on the ground, there from the start, initial stresses included; it moves with the soil"""
+
+    from_m: NotNegative = Field(description="x of its left end [m]")
+    to_m: NotNegative = Field(description="x of its right end [m]")
+    pressure_kpa: Annotated[Number, Field(gt=0)] = Field(description="Pressure [kPa]")
+
+
+class Obstacle(Table):
+    """[[obstacle]]: a rigid wall or building, into which soil does not move"""
+
+    corners_m: Corners = Field(description="Corners of its section")
+    friction: NotNegative = Field(0.0, description="Coulomb friction coefficient of its faces [1]")
+
+
 Geometry = Annotated[SlopeGeometry | BlockGeometry | RegionsGeometry, Field(discriminator="kind")]

@@ -15,7 +15,7 @@ from rfmpm.study.checks import joint_problems
 from rfmpm.study.diagnosis import Diagnosis
 from rfmpm.study.errors import Problem, StudyError
 from rfmpm.study.field_models import FieldCorrelation, Property, RandomField
-from rfmpm.study.geometry_models import Geometry
+from rfmpm.study.geometry_models import Geometry, Load, Obstacle
 from rfmpm.study.kinds import Table
 from rfmpm.study.known import Known, path_of
 from rfmpm.study.models import (
@@ -65,6 +65,12 @@ class Study(Table):
     boundary: Boundary
     material: Annotated[tuple[Material, ...], Hint("written [[material]]")] = Field(
         description="The materials; more than one for regions and layers"
+    )
+    load: Annotated[tuple[Load, ...], Hint("written [[load]]")] | None = Field(
+        None, description="Loads on the ground; left out: none"
+    )
+    obstacle: Annotated[tuple[Obstacle, ...], Hint("written [[obstacle]]")] | None = Field(
+        None, description="Rigid obstacles in the way of the soil; left out: none"
     )
     random_field: dict[Property, RandomField] = Field(
         default_factory=dict, description="The random variables; left out: a homogeneous slope"

@@ -26,12 +26,21 @@ FLOORS = {
     3.2: ("uncertainty",),
     3: ("mpm.scene", "mpm.solvers", "mpm.equilibrium", "random_fields.field", "random_fields.statistics"),
     2.5: (
-        *("mpm.geometry", "mpm.energy", "mpm.initial_stress", "mpm.soils"),
+        *("mpm.geometry", "mpm.energy", "mpm.initial_stress", "mpm.soils", "mpm.placing"),
         *("random_fields.store", "random_fields.trend", "random_fields.law"),
     ),
     2.2: ("mpm.transfer", "random_fields.averaging", "random_fields.gaussian_space"),
     2: (
-        *("mpm.stages", "mpm.cells", "mpm.nonlocal_softening", "mpm.boundary", "mpm.contact", "mpm.laws", "mpm.shapes"),
+        *(
+            "mpm.attachments",
+            "mpm.stages",
+            "mpm.cells",
+            "mpm.nonlocal_softening",
+            "mpm.boundary",
+            "mpm.contact",
+            "mpm.laws",
+            "mpm.shapes",
+        ),
         *("random_fields.methods", "random_fields.correlation", "random_fields.marginals"),
         *("random_fields.conditioning", "random_fields.measurements"),
         *("random_fields.sounding", "random_fields.estimation", "random_fields.variance_function"),

@@ -18,9 +18,10 @@ from rfmpm.variables import (
 
 COARSE = Path(__file__).parents[1] / "robustness" / "coarse.toml"
 TABLES = (VARIABLES, COORDINATES, POINT_VARIABLES, HISTORY_VARIABLES)
-UNIT = re.compile(r"1|rad|(kg|m|s|J|Pa)-?\d*( (kg|m|s)-?\d*)*")
+UNIT = re.compile(r"1|rad|(kg|m|s|J|N|Pa)-?\d*( (kg|m|s)-?\d*)*")
 OF_MANY_UNITS = ("uncertain_value",)  # each in that of its key
-ASKED_FOR = {"uncertain_value", "factor_of_safety", "out_of_balance"}  # by a study with the tables for it
+# By a study with the tables for it.
+ASKED_FOR = {"uncertain_value", "factor_of_safety", "impact_force_peak", "out_of_balance"}
 CONTRACT = {
     "run_out": "m", "retrogression_distance": "m", "retrogression_censored": "", "failure_volume": "m3 m-1",
     "initial_failure_volume": "m3 m-1", "influence_distance": "m", "block_count": "1", "status": "",

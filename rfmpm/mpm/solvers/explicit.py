@@ -4,6 +4,7 @@ from math import exp, inf
 from typing import NamedTuple
 
 from rfmpm.kernel_tools import kernel
+from rfmpm.mpm.attachments import hold_off, press
 from rfmpm.mpm.protocols import average, carry, filter_nodes, update_nodes, update_points
 from rfmpm.mpm.state import AT_REST, ENERGY_GREW, LEFT_GRID, NOT_A_NUMBER, RUNNING, Progress
 
@@ -31,7 +32,7 @@ class Controls(NamedTuple):
 
 
 @kernel
-def step(now, points, law, history, axes, grid, cells, averaging, walls, controls, passes):
+def step(now, points, law, history, axes, grid, cells, averaging, walls, controls, load, obstacle, passes):
     """Advance everything by one time step; a first call with no nodes touched only fills the grid.
 
     Returns the new progress.
@@ -43,6 +44,8 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
         settling = controls.settling_rate if now.calm_time >= controls.rest_time else 0.0
         share = RESOLVED_SHARE * controls.courant**2
         update_nodes(passes, grid, walls, box, controls.gravity, settling, dt, share)
+        if obstacle is not None:
+            hold_off(obstacle, grid, box)
         rate = 1.0 / controls.dissipation_time + settling
         since_filter = now.since_filter + dt
         if now.step_count % controls.filter_interval == 0 and rate > 0.0:
@@ -54,6 +57,10 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
             friction = update_points(passes, points, axes, grid, None, 0.0, box, controls.own_share)
     moved = carry(passes, points, law, history, axes, grid, cells, box, dt)
     kinetic, fall, work, plastic, fastest, touched, culprit = moved
+    pressed = 0.0
+    if load is not None:  # noqa: SIM102  (an argument that is None is pruned here, not within a condition)
+        if culprit < 0:
+            pressed = press(points, load, axes, grid)
     since_average = now.since_average + dt
     if averaging is not None:  # noqa: SIM102  (an argument that is None is pruned here, not within a condition)
         if since_average >= controls.average_interval and culprit < 0:
@@ -65,7 +72,7 @@ def step(now, points, law, history, axes, grid, cells, averaging, walls, control
     after = Progress(
         now.status, now.time + dt, now.step_count + (dt > 0.0), kinetic, peak, quiet, calm, flow_before, since_filter,
         since_average, fastest**0.5,
-        now.gravity_work + controls.gravity * fall, now.stress_work + work, now.plastic_work + plastic,
+        now.gravity_work + controls.gravity * fall + pressed, now.stress_work + work, now.plastic_work + plastic,
         now.friction_work + friction, touched[0], touched[1], touched[2], touched[3], culprit,
     )  # fmt: skip
     return judge(after, points, controls)
@@ -106,7 +113,7 @@ def judge(now, points, controls):
 
 
 @kernel
-def advance(now, until, points, law, history, axes, grid, cells, averaging, walls, controls, passes):
+def advance(now, until, points, law, history, axes, grid, cells, averaging, walls, controls, load, obstacle, passes):
     """Step until the time is `until` or later, or the run ends.
 
     Args:
@@ -120,11 +127,13 @@ def advance(now, until, points, law, history, axes, grid, cells, averaging, wall
         averaging: how softening is averaged, of this run; None: each point softens by itself.
         walls: what holds the domain's edges.
         controls: numbers of the time integration.
+        load: on the surface, of this run; None: none. Its work counts as gravity's.
+        obstacle: in the way, of this run; None: none.
         passes: who takes the passes over points and nodes; `Alone()`, or a team of threads.
 
     Returns:
         The progress, with its status.
     """
     while now.status == RUNNING and (now.time < until or now.last_row < 0):
-        now = step(now, points, law, history, axes, grid, cells, averaging, walls, controls, passes)
+        now = step(now, points, law, history, axes, grid, cells, averaging, walls, controls, load, obstacle, passes)
     return now
