@@ -9,12 +9,14 @@ from rfmpm.estimators.replicated import Replicated
 from rfmpm.estimators.rows import Rows
 from rfmpm.estimators.stratified import Stratified
 from rfmpm.estimators.subset_simulation import SubsetSimulation
+from rfmpm.estimators.two_phase import TwoPhase
 
 ESTIMATORS = {
     "monte_carlo": MonteCarlo,
     "replicated": Replicated,
     "multilevel": Multilevel,
     "control_variate": ControlVariate,
+    "two_phase": TwoPhase,
     "stratified": Stratified,
     "subset_simulation": SubsetSimulation,
 }
@@ -33,6 +35,7 @@ __all__ = [
     "Rows",
     "Stratified",
     "SubsetSimulation",
+    "TwoPhase",
     "Value",
     "contiguous_prefix",
     "exceedance",
