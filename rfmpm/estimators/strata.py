@@ -19,28 +19,23 @@ def natural_breaks(values: np.ndarray, strata: int = STRATA) -> np.ndarray:
     Source: Fisher (1958), J. Am. Stat. Assoc. 53, 789-798.
     """
     x = np.sort(values[np.isfinite(values)])
-    n, least = x.size, max(1, round(LEAST_SHARE * values.size))
-    total, squares = (np.concatenate([[0.0], np.cumsum((x - x.mean()) ** p if n else x)]) for p in (1, 2))
-    starts = [0, *(k for k in range(1, n) if x[k - 1] < x[k]), n]
-    # cost[j]: of the best division of the first starts[j] values into groups; before: where the last of these begins
-    cost, before = np.where(np.array(starts) == 0, 0.0, np.inf), []
+    least = max(1, round(LEAST_SHARE * values.size))
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(x) > 0.0) + 1, [x.size]])
+    total, squares = (np.concatenate([[0.0], np.cumsum((x - x[:1].sum()) ** p)])[starts] for p in (1, 2))
+    n, sums, inside = (np.subtract.outer(of, of) for of in (starts, total, squares))  # from the second to the first
+    inside = np.where(n >= least, inside - sums**2 / np.maximum(n, 1), np.inf)
+    # cost of the best division of the first so many values into the groups so far; before: where their last one begins
+    cost, before = np.where(starts == 0, 0.0, np.inf), []
     for _ in range(strata):
-        following, origin = np.full(cost.shape, np.inf), np.zeros(cost.size, int)
-        for j, stop in enumerate(starts):
-            for i, start in enumerate(starts[:j]):
-                if stop - start < least:
-                    break
-                inside = squares[stop] - squares[start] - (total[stop] - total[start]) ** 2 / (stop - start)
-                if cost[i] + inside < following[j]:
-                    following[j], origin[j] = cost[i] + inside, i
-        if not np.isfinite(following[-1]):
+        divided = inside + cost
+        if not np.isfinite(divided[-1].min()):
             break
-        cost = following
-        before.append(origin)
-    edges, j = [], len(starts) - 1
+        before.append(divided.argmin(axis=1))
+        cost = divided.min(axis=1)
+    edges, place = [], len(starts) - 1
     for origin in reversed(before):
-        j = origin[j]
-        edges.append(starts[j])
+        place = origin[place]
+        edges.append(starts[place])
     return np.array([0.5 * (x[k - 1] + x[k]) for k in edges[::-1] if k > 0])
 
 
