@@ -4,7 +4,7 @@ from rfmpm.estimators.curves import Band, exceedance_curve, running_exceedance, 
 from rfmpm.estimators.monte_carlo import Estimate, contiguous_prefix, exceedance, mean, missing, quantile
 from rfmpm.estimators.multilevel import ControlVariate, Multilevel
 from rfmpm.estimators.plain import MonteCarlo
-from rfmpm.estimators.question import Exceedances, Given, Question, Value
+from rfmpm.estimators.question import Exceedances, Question, Value
 from rfmpm.estimators.replicated import Replicated
 from rfmpm.estimators.rows import Rows
 from rfmpm.estimators.stratified import Stratified
@@ -27,7 +27,6 @@ __all__ = [
     "ControlVariate",
     "Estimate",
     "Exceedances",
-    "Given",
     "MonteCarlo",
     "Multilevel",
     "Question",

@@ -50,7 +50,7 @@ class LinearEstimator(ABC):
 
         Args:
             rows: of the campaign.
-            functions: Value, Exceedances or Given.
+            functions: Value or Exceedances.
 
         Returns:
             Expectation, arrays of shape (k,).
