@@ -24,7 +24,8 @@ class Multilevel(Staged):
     levels; the levels that pay are kept, and the numbers follow from the variances and the work measured so far.
 
     Given the numbers the estimate is unbiased. That they follow from the same rows costs a bias of the order 1 / n: at
-    128 realisations a tenth of the standard error for a probability of 0.15, none that is seen for a mean.
+    128 realisations a tenth of the standard error for a probability of 0.15, none that is seen for a mean. On the short
+    slope, whose cell sizes differ in 1 realisation of 100, it was 0.3 standard errors at 64 for P(run-out > 5 m).
     """
 
     method = "multilevel Monte Carlo"
