@@ -4,17 +4,19 @@ from rfmpm.estimators.curves import Band, exceedance_curve, running_exceedance, 
 from rfmpm.estimators.monte_carlo import Estimate, contiguous_prefix, exceedance, mean, missing, quantile
 from rfmpm.estimators.multilevel import ControlVariate, Multilevel
 from rfmpm.estimators.plain import MonteCarlo
-from rfmpm.estimators.question import Exceedances, Given, Question, Value
+from rfmpm.estimators.question import Exceedances, Question, Value
 from rfmpm.estimators.replicated import Replicated
 from rfmpm.estimators.rows import Rows
 from rfmpm.estimators.stratified import Stratified
 from rfmpm.estimators.subset_simulation import SubsetSimulation
+from rfmpm.estimators.two_phase import TwoPhase
 
 ESTIMATORS = {
     "monte_carlo": MonteCarlo,
     "replicated": Replicated,
     "multilevel": Multilevel,
     "control_variate": ControlVariate,
+    "two_phase": TwoPhase,
     "stratified": Stratified,
     "subset_simulation": SubsetSimulation,
 }
@@ -25,7 +27,6 @@ __all__ = [
     "ControlVariate",
     "Estimate",
     "Exceedances",
-    "Given",
     "MonteCarlo",
     "Multilevel",
     "Question",
@@ -33,6 +34,7 @@ __all__ = [
     "Rows",
     "Stratified",
     "SubsetSimulation",
+    "TwoPhase",
     "Value",
     "contiguous_prefix",
     "exceedance",

@@ -40,12 +40,14 @@ class Contributions:
         stratum: of each unit, shape (n,).
         base: constant part of the estimate, shape (k,).
         counts: for probabilities, the differences of indicators behind the estimate; empty for means.
+        freedom: degrees of freedom of the standard errors, shape (k,) [-]; None where the strata tell them.
     """
 
     unit: np.ndarray
     stratum: np.ndarray
     base: np.ndarray
     counts: tuple[Counts, ...] = field(default=())
+    freedom: np.ndarray | None = None
 
     @property
     def value(self) -> np.ndarray:
@@ -76,6 +78,8 @@ class Contributions:
 
         Source: Welch (1947), Biometrika 34, 28-35; Satterthwaite (1946), Biometrics Bulletin 2, 110-114.
         """
+        if self.freedom is not None:
+            return self.freedom
         squares = self.deviations() ** 2
         strata = np.unique(self.stratum)
         parts = np.array([squares[self.stratum == s].sum(axis=0) for s in strata])
@@ -92,8 +96,9 @@ class Contributions:
         A mean has Student's t interval with Welch's degrees of freedom. So has a probability; its two half widths are
         then corrected by what better intervals of the underlying counts have over Wald's, which matters where few
         counts make the normal approximation and the estimated variance worthless, and clipped into 0 to 1: Wilson's
-        score interval of a share, Agresti and Min's of a difference of paired indicators, which counts half a
-        difference of either sign more than there are.
+        score interval of a share; of a difference of paired indicators one that counts a single difference where
+        there is none. (Agresti and Min's, which counts one more always, covered 0.98 with 128 pairs of the short
+        slope.)
 
         Args:
             confidence: level [-].
@@ -103,8 +108,7 @@ class Contributions:
             Expectation, arrays of shape (k,).
 
         Source: Zou and Donner (2008), Statistics in Medicine 27, 1693-1702, doi:10.1002/sim.3095, for intervals of a
-        sum recovered from the intervals of its parts; Agresti and Min (2005), Statistics in Medicine 24, 729-740,
-        doi:10.1002/sim.1781.
+        sum recovered from the intervals of its parts; Agresti and Min (2005), Statistics in Medicine 24, 729-740.
         """
         value, error = self.value, self.standard_error()
         if not len(self.unit):
@@ -133,7 +137,7 @@ def _corrected(half: np.ndarray, counts: tuple[Counts, ...], confidence: float) 
             down += (count.scale * (plus / n - lower)) ** 2
             up += (count.scale * (upper - plus / n)) ** 2
         else:
-            both = square * (plus + minus + 1.0 - (plus - minus) ** 2 / (n + 2.0)) / (n + 2.0) ** 2
+            both = square * (np.maximum(plus + minus, 1.0) - (plus - minus) ** 2 / n) / n**2
             down, up = down + both, up + both
     return tuple(_replaced(half, wald, score) for score in (down, up))
 

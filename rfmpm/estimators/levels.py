@@ -84,7 +84,7 @@ def terms(nested: Nested) -> Terms:
     fold = np.arange(len(nested.outcome[-1])) % FOLDS
     found = Terms(*([np.zeros((len(y), *shape)) for y in nested.outcome] for shape in ((k,), (), (), (k,))))
     found = replace(found, scale=[np.zeros(k) for _ in nested.outcome])
-    features = None if nested.normals is None else _features(nested.normals)
+    features = None if nested.normals is None else field_features(nested.normals)
     can_fit = int(present.sum()) >= FEWEST_TO_FIT
     for f in range(FOLDS):
         share = float(np.mean(fold[: len(present)][present] == f)) if present.any() else 0.0
@@ -109,7 +109,7 @@ def terms(nested: Nested) -> Terms:
     return found
 
 
-def _features(normals: np.ndarray) -> np.ndarray:
+def field_features(normals: np.ndarray) -> np.ndarray:
     """Functions of standard normals with mean 0 and variance 1: themselves, their squares, products of the first."""
     first, second = np.triu_indices(min(MULTIPLIED, normals.shape[1]), 1)
     return np.hstack([normals, (normals**2 - 1.0) / np.sqrt(2.0), normals[:, first] * normals[:, second]])

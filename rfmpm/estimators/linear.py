@@ -38,6 +38,10 @@ class LinearEstimator(ABC):
             functions: whose expectations are estimated.
         """
 
+    def is_fair(self, used: Rows) -> np.ndarray:
+        """Return which of the used rows are a fair sample on the study's own cells, shape (n,)."""
+        return used.level == 0
+
     def expectation(self, rows: Rows, functions: Functions) -> Expectation:
         """Estimate the means of k functions of the quantity, each with its own interval.
 
@@ -46,7 +50,7 @@ class LinearEstimator(ABC):
 
         Args:
             rows: of the campaign.
-            functions: Value, Exceedances or Given.
+            functions: Value or Exceedances.
 
         Returns:
             Expectation, arrays of shape (k,).
@@ -58,7 +62,7 @@ class LinearEstimator(ABC):
         is_probability = functions.is_probability
         found = self.contributions(outcome, used, functions).expectation(confidence, is_probability)
         if is_probability:
-            found = _wide_where_few(found, outcome[(used.level == 0) & ~failed[:, 0]], confidence)
+            found = _wide_where_few(found, outcome[self.is_fair(used) & ~failed[:, 0]], confidence)
         if not is_probability or not failed.any():
             return found
         low, high = (

@@ -24,7 +24,8 @@ class Multilevel(Staged):
     levels; the levels that pay are kept, and the numbers follow from the variances and the work measured so far.
 
     Given the numbers the estimate is unbiased. That they follow from the same rows costs a bias of the order 1 / n: at
-    128 realisations a tenth of the standard error for a probability of 0.15, none that is seen for a mean.
+    128 realisations a tenth of the standard error for a probability of 0.15, none that is seen for a mean. On the short
+    slope, whose cell sizes differ in 1 realisation of 100, it was 0.3 standard errors at 64 for P(run-out > 5 m).
     """
 
     method = "multilevel Monte Carlo"
@@ -99,16 +100,7 @@ class Multilevel(Staged):
 
     def _shared_by(self, rows: Rows) -> Nested:
         """What the work is shared by: the question's own function, at a limit that enough of the rows exceed."""
-        functions = Value()
-        if self.question.kind != "mean":
-            values = np.sort(rows.value[(rows.level == 0) & ~rows.is_failed])
-            place = values.size * (self.question.probability or 0.0)
-            if self.question.kind == "exceedance":
-                place = float(np.searchsorted(values, self.question.limit, side="right"))
-            fewest = min(FEWEST_TO_SHARE_BY, values.size // 2)
-            place = int(np.clip(place, fewest, values.size - fewest))
-            if fewest > 0:
-                functions = Exceedances(values[place - 1 : place])
+        functions = sharing_functions(self.question, rows.on_level(0))
         return self._nested(functions(rows), rows, functions)
 
     def _nested(self, outcome: np.ndarray, rows: Rows, functions: Functions) -> Nested:
@@ -190,3 +182,21 @@ class ControlVariate(Multilevel):
 
 def _whole(number: float) -> int:
     return FOLDS * math.ceil(number / FOLDS)
+
+
+def sharing_functions(question: Question, own: Rows) -> Functions:
+    """What work is shared by: the question's own function, at a limit that enough of a fair sample exceed.
+
+    Args:
+        question: what is wanted.
+        own: rows on the study's own cells that are a fair sample.
+    """
+    if question.kind == "mean":
+        return Value()
+    values = np.sort(own.value[~own.is_failed])
+    place = values.size * (question.probability or 0.0)
+    if question.kind == "exceedance":
+        place = float(np.searchsorted(values, question.limit, side="right"))
+    fewest = min(FEWEST_TO_SHARE_BY, values.size // 2)
+    place = int(np.clip(place, fewest, values.size - fewest))
+    return Exceedances(values[place - 1 : place]) if fewest > 0 else Value()

@@ -45,25 +45,6 @@ class Exceedances:
 
 
 @dataclass(frozen=True)
-class Given:
-    """Outcomes computed elsewhere, one line per row: say whether each of k places was reached.
-
-    Attributes:
-        outcome: shape (n, k), in the order of the rows it is asked of; NaN where the row failed.
-        is_probability: whether every outcome is 0 or 1.
-    """
-
-    outcome: np.ndarray
-    is_probability: bool = True
-
-    def __call__(self, rows: Rows) -> np.ndarray:
-        """Return the outcomes, shape (n, k); ValueError if there are not as many as rows."""
-        if len(self.outcome) != rows.value.size:
-            raise ValueError(f"{len(self.outcome)} lines of outcomes for {rows.value.size} rows")
-        return np.where(rows.is_failed[:, None], np.nan, np.asarray(self.outcome, float))
-
-
-@dataclass(frozen=True)
 class Question:
     """A mean, a probability of exceeding a limit or a quantile of one quantity, and how well it is to be known.
 

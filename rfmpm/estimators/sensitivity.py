@@ -3,11 +3,10 @@
 From a design of whole base points: first-order indices by Saltelli et al. (2010, Computer Physics Communications 181,
 table 2, b), total ones by Jansen (1999, Computer Physics Communications 117). From any independent realisations:
 first-order indices of single numbers from the spread between classes of equal size (Plischke, Borgonovo and Smith 2013,
-European Journal of Operational Research 226), less what chance gives, and rank correlations.
+European Journal of Operational Research 226), less what chance gives.
 """
 
 from dataclasses import dataclass
-from math import sqrt
 
 import numpy as np
 
@@ -55,14 +54,12 @@ class SobolIndices:
 
 @dataclass(frozen=True)
 class GivenData:
-    """First-order indices and rank correlations from independent realisations, shape (k,) each [-].
+    """First-order indices from independent realisations, shape (k,) each [-].
 
     Attributes:
         first: first-order indices; what chance gives is taken off, so that they may be negative.
         interval: shape (k, 2).
         noise: what an index stays below in 95 % of cases where the quantity does not depend on the number.
-        rank_correlation: Spearman's.
-        rank_noise: what the size of a rank correlation stays below in 95 % of cases where there is none.
         rows: completed ones that they rest on.
         dropped: failed rows, left out.
     """
@@ -70,26 +67,16 @@ class GivenData:
     first: np.ndarray
     interval: np.ndarray
     noise: np.ndarray
-    rank_correlation: np.ndarray
-    rank_noise: float
     rows: int
     dropped: int
 
 
-def outcome(rows: Rows, limit: float | None) -> np.ndarray:
-    """The quantity of each row, or whether it exceeds a limit, shape (n,); NaN where failed; censored ones exceed."""
-    if limit is None:
-        return rows.value
-    return np.where(rows.is_failed, np.nan, ((rows.value > limit) | rows.is_censored).astype(float))
-
-
-def arrange(rows: Rows, groups: int, limit: float | None = None) -> Design:
+def arrange(rows: Rows, groups: int) -> Design:
     """Arrange the rows of a design by base point and block.
 
     Args:
         rows: of the design; level 0 is taken.
         groups: of variables.
-        limit: takes 1 where the quantity exceeds it and 0 where not, instead of the quantity.
 
     Returns:
         The whole base points in order.
@@ -98,7 +85,7 @@ def arrange(rows: Rows, groups: int, limit: float | None = None) -> Design:
     base, block = np.divmod(own.index, groups + 2)
     shape = int(base.max(initial=-1)) + 1, groups + 2
     values, is_finished = np.full(shape, np.nan), np.zeros(shape, bool)
-    values[base, block], is_finished[base, block] = outcome(own, limit), True
+    values[base, block], is_finished[base, block] = own.value, True
     is_whole = is_finished.all(axis=1)
     is_good = ~np.isnan(values).any(axis=1)
     return Design(values[is_good], int(np.sum(is_whole & ~is_good)), int(np.sum(~is_whole)))
@@ -140,15 +127,12 @@ def _resampled_means(terms: np.ndarray) -> np.ndarray:
     return np.array([terms[rng.integers(count, size=count)].mean(axis=0) for _ in range(RESAMPLES)])
 
 
-def given_data_indices(
-    numbers: np.ndarray, rows: Rows, limit: float | None = None, confidence: float = 0.95
-) -> GivenData:
+def given_data_indices(numbers: np.ndarray, rows: Rows, confidence: float = 0.95) -> GivenData:
     """Estimate first-order indices of uncertain numbers from independent realisations.
 
     Args:
         numbers: values of the k numbers in each row, shape (n, k) [any unit].
         rows: n rows of independent realisations on one level.
-        limit: as for `arrange`.
         confidence: of the intervals [-].
 
     Returns:
@@ -159,13 +143,13 @@ def given_data_indices(
     """
     if len(numbers) != len(rows.value):
         raise ValueError(f"{len(numbers)} lines of uncertain numbers for {len(rows.value)} rows")
-    y = outcome(rows, limit)
+    y = rows.value
     is_good = ~np.isnan(y) & ~np.isnan(numbers).any(axis=1)
     x, y, dropped = numbers[is_good], y[is_good], int(np.sum(~is_good))
     count, width = x.shape
     if count < FEWEST or np.ptp(y) == 0.0:
         nothing = np.full(width, np.nan)
-        return GivenData(nothing, np.tile(nothing, (2, 1)).T, nothing, nothing, np.nan, count, dropped)
+        return GivenData(nothing, np.tile(nothing, (2, 1)).T, nothing, count, dropped)
     classes = int(np.clip(count // ROWS_OF_A_CLASS, FEWEST_CLASSES, MOST_CLASSES))
     class_of = _ranks(x).astype(int) * classes // count
     rng = np.random.default_rng(SEED)
@@ -181,11 +165,7 @@ def given_data_indices(
         first.append(found)
         interval.append((found + low, found + high))
         noise.append(np.quantile(_between(np.broadcast_to(own, shuffled.shape), shuffled, classes), 0.95))
-    ranks, ranks_of_y = _ranks(x), _average_ranks(y)
-    correlation = np.array([np.corrcoef(one, ranks_of_y)[0, 1] for one in ranks.T])
-    return GivenData(
-        np.array(first), np.array(interval), np.array(noise), correlation, 1.96 / sqrt(count - 1), count, dropped
-    )
+    return GivenData(np.array(first), np.array(interval), np.array(noise), count, dropped)
 
 
 def _between(class_of: np.ndarray, y: np.ndarray, classes: int) -> np.ndarray:
@@ -204,9 +184,3 @@ def _between(class_of: np.ndarray, y: np.ndarray, classes: int) -> np.ndarray:
 def _ranks(x: np.ndarray) -> np.ndarray:
     """Places in ascending order along the first axis, from 0."""
     return np.argsort(np.argsort(x, axis=0, kind="stable"), axis=0, kind="stable").astype(float)
-
-
-def _average_ranks(y: np.ndarray) -> np.ndarray:
-    """Places in ascending order; equal values share the mean of theirs."""
-    _, value, counts = np.unique(y, return_inverse=True, return_counts=True)
-    return (np.cumsum(counts) - 0.5 * (counts + 1))[value]

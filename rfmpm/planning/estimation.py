@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rfmpm.estimators import ControlVariate, Estimate, MonteCarlo, Multilevel, Replicated, Rows
+from rfmpm.estimators import ControlVariate, Estimate, MonteCarlo, Multilevel, Replicated, Rows, TwoPhase
 from rfmpm.estimators.protocol import Estimator
 from rfmpm.estimators.stratified import Stratified
 from rfmpm.estimators.subset_simulation import SubsetSimulation
@@ -51,6 +51,8 @@ def estimator_of(study) -> Estimator:
     if table.method == "multilevel":
         return Multilevel(question, levels, number)
     features = FieldFeatures(study) if table.principal_components else None
+    if table.method == "two_phase":
+        return TwoPhase(question, features, number, table.fair_size)
     return ControlVariate(question, levels, features, number)
 
 

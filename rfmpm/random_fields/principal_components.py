@@ -69,20 +69,6 @@ def principal_components(properties: Properties, count: int, folder: Path | None
     return fresh
 
 
-def scores(directions: np.ndarray, xi: np.ndarray) -> np.ndarray:
-    """Return how far vectors lie along the principal directions: independent standard-normal numbers.
-
-    Args:
-        directions: V, shape (d, n_variables) [-].
-        xi: shape (..., n_variables) [-].
-
-    Returns:
-        eta = V xi, shape (..., d) [-].
-    """
-    with single_blas_thread():
-        return xi @ directions.T
-
-
 def linear_map(properties: Properties) -> np.ndarray:
     """Form A: the fields of unit vectors less those of zero, shape (n_variables, points of all properties) [-].
 

@@ -47,6 +47,11 @@ class Answers:
         """Whether realisations follow from others, so that the first ones alone are a fair sample."""
         return planning.has_chains(self.study)
 
+    @property
+    def fair_size(self) -> int | None:
+        """First realisations that are a fair sample, where later ones are chosen by what came before; None: all are."""
+        return self.study.estimator.fair_size if self.study.estimator else None
+
     def rows_of(self, quantity: str) -> Rows:
         """What estimators see of a quantity; a part of a study counts from its own first realisation."""
         data = self.dataset
@@ -65,9 +70,9 @@ class Answers:
         return planning.estimator_of(self.study)
 
     def _asking(self, **changes):
-        if changes and self.has_chains:  # which answer their own question alone
+        if changes and self.fair_size is not None:  # what was chosen answers the study's own question alone
             plain = replace(self.question, half_width=None, relative_half_width=None, **changes)
-            return estimators.MonteCarlo(plain, self.study.estimator.fair_size)
+            return estimators.MonteCarlo(plain, self.fair_size)
         estimator = copy(self._estimator)
         estimator.question = replace(self.question, **changes)
         return estimator
@@ -86,7 +91,7 @@ class Answers:
         if self.has_chains:  # what followed from a failed one would have been another
             return self.estimate(rows)
         failed = rows.is_failed & (rows.level == 0)
-        rows = replace(rows, is_censored=np.zeros(failed.shape, bool))
+        rows = replace(rows, is_censored=rows.is_censored & (rows.level > 0))
         if self.question.kind == "exceedance":
             return self.estimate(replace(rows, value=np.where(failed, 0.0, rows.value)))
         if self.is_plain:  # any of them may be left out; the others move up
@@ -96,9 +101,13 @@ class Answers:
     def settling(self) -> Band:
         """Follow the answer as rows are added on all levels alike, over the number on the study's own cells."""
         numbers = np.array(self.rows.numbers(int(self.rows.level.max(initial=0)) + 1))
-        shares = np.linspace(1.0 / STEPS, 1.0, STEPS)
-        found = [self.estimate(self.rows.first(np.ceil(share * numbers).astype(int))) for share in shares]
-        at = np.ceil(shares * numbers[0])
+        if self.fair_size is not None:  # not the first ones on the own cells, but some among all indices
+            numbers[0] = numbers.max()
+        parts = [
+            self.rows.first(np.ceil(share * numbers).astype(int)) for share in np.linspace(0.0, 1.0, STEPS + 1)[1:]
+        ]
+        found = [self.estimate(part) for part in parts]
+        at = np.array([np.sum(part.level == 0) for part in parts])
         return Band(
             at, *(np.array([getattr(e, k) for e in found]) for k in ("value", "lower", "upper")), self.confidence
         )
@@ -114,14 +123,15 @@ class Answers:
             return None
         asked, cells = self.question, (self.study.discretisation.cell_m, *coarser)
         functions = Exceedances(np.array([asked.limit])) if asked.kind == "exceedance" else Value()
-        found = discretisation(self.rows, functions, cells, self.confidence)
+        rows = self.rows if self.fair_size is None else self.rows.where(self.rows.index < self.fair_size)
+        found = discretisation(rows, functions, cells, self.confidence)
         if found is None or found.n < FEWEST_PAIRS:
             return None
-        return self._of_quantile(found) if asked.kind == "quantile" else found
+        return self._of_quantile(found, rows) if asked.kind == "quantile" else found
 
-    def _of_quantile(self, of_mean: Discretisation) -> Discretisation:
+    def _of_quantile(self, of_mean: Discretisation, rows: Rows) -> Discretisation:
         """The same for the quantile, from pairs on the two finest levels, resampled; first order is assumed."""
-        own, other = (self.rows.on_level(k).where(~self.rows.on_level(k).is_failed) for k in (0, 1))
+        own, other = (rows.on_level(k).where(~rows.on_level(k).is_failed) for k in (0, 1))
         _, mine, theirs = np.intersect1d(own.index, other.index, return_indices=True)
         pairs, p = np.array([own.value[mine], other.value[theirs]]), self.question.probability
         drawn = np.random.default_rng(0).integers(mine.size, size=(RESAMPLES, mine.size))

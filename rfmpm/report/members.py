@@ -11,7 +11,7 @@ def usable(dataset, study=None):
     """Return the rows with indices 0, 1, 2, ... up to the first gap, in this order (xarray.Dataset).
 
     Only simulations on the study's own cells count. Those of a part of a study begin with its own first index. Where
-    later ones look for the rare on purpose, the first ones alone are a fair sample.
+    later ones are chosen by what came before, the first ones alone are a fair sample.
 
     Args:
         dataset: the ensemble.

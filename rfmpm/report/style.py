@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 # Okabe and Ito's colours, told apart by colour-blind readers too.
-BLUE, ORANGE, VERMILION, GREY = "#0072B2", "#E69F00", "#D55E00", "#595959"
+BLUE, ORANGE, VERMILION, GREEN, GREY = "#0072B2", "#E69F00", "#D55E00", "#009E73", "#595959"
 STRAIN_MAP, STRENGTH_MAP = "viridis", "cividis"
 CHART = (4.6, 3.2)  # inches; small, so that its letters are still large on a phone
 DOTS_PER_INCH = 130

@@ -6,7 +6,7 @@ from math import isclose
 
 from rfmpm.study.errors import Problem
 from rfmpm.study.known import Known, path_of, problem
-from rfmpm.study.question_models import DEFAULTS, READERS, TOWARDS_LIMIT, reads
+from rfmpm.study.question_models import DEFAULTS, FIRST_OF_TWO_PHASES, READERS, TOWARDS_LIMIT, reads
 
 UNTIL, OWN = "study.until", "estimator"
 UNIT = {"failure_volume": "m3_per_m", "initial_failure_volume": "m3_per_m"}  # of all others: m
@@ -14,7 +14,7 @@ WIDTHS = ("half_width", "half_width_m", "half_width_m3_per_m", "relative_half_wi
 FIXED = "must be left out together with study.until, which says when to end"
 FEWEST_REPLICATES = 8  # Student's factor is then 2.36; with 4 it is 3.18
 FEWEST_SUBSETS = 2  # independent subset simulations: their scatter shows what the chains of one do not
-WITH_QUESTION = ("multilevel", "control_variate", *TOWARDS_LIMIT)
+WITH_QUESTION = ("multilevel", "control_variate", "two_phase", *TOWARDS_LIMIT)
 
 
 def _has_question(known: Known) -> bool:
@@ -155,6 +155,19 @@ def _pilot_fits(known: Known) -> Iterator[Problem]:
         yield problem(known, f"{UNTIL}.at_most", text)
 
 
+def _two_phases_fit(known: Known) -> Iterator[Problem]:
+    if (chosen := _estimator(known)) is None or chosen[0] != "two_phase":
+        return
+    coarser = known[f"{OWN}.coarser_cells_m"] or ()
+    if len(coarser) != 1:
+        text = "needs one cell size, such as twice the cells of the study"
+        yield Problem(path_of(f"{OWN}.coarser_cells_m"), text, list(coarser) or None)
+    most, least = known[f"{UNTIL}.at_most"] if _has_question(known) else None, 2 * FIRST_OF_TWO_PHASES
+    if most is not None and most < least:
+        text = f"must be at least {least}: the first realisations of two_phase and as many chosen ones"
+        yield problem(known, f"{UNTIL}.at_most", text)
+
+
 def _cells_are_coarser(known: Known) -> Iterator[Problem]:
     if known[OWN] is None or not (coarser := known[f"{OWN}.coarser_cells_m"]):
         return
@@ -219,6 +232,7 @@ QUESTION_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _method_has_what_it_needs,
     _design_is_whole,
     _chains_fit,
+    _two_phases_fit,
     _pilot_fits,
     _cells_are_coarser,
 ]

@@ -51,8 +51,8 @@ class Question(Table):
 class Estimation(Table):
     """[estimator]: how a campaign answers; left out: plain Monte Carlo"""
 
-    method: Literal["monte_carlo", "multilevel", "control_variate", "stratified", "subset_simulation"] = Field(
-        "monte_carlo", description="What the answer is made of"
+    method: Literal["monte_carlo", "multilevel", "control_variate", "two_phase", "stratified", "subset_simulation"] = (
+        Field("monte_carlo", description="What the answer is made of")
     )
     sampling: Literal["random", "latin_hypercube", "sobol", "saltelli"] = Field(
         "random", description="How the random variables of monte_carlo are chosen: independent, or by a design"
@@ -65,8 +65,8 @@ class Estimation(Table):
     )
     principal_components: Annotated[Count, Field(ge=1, le=10_000)] | None = Field(
         None,
-        description="Leading components of the fields that a design fixes or stratified looks for its direction in "
-        "(default: 32), or that control_variate takes (default: none)",
+        description="Leading components of the fields that a design fixes, two_phase takes or stratified looks for its "
+        "direction in (default: 32), or that control_variate takes (default: none)",
     )
     pilot_size: Annotated[Count, Field(ge=20, le=LARGEST_COUNT)] | None = Field(
         None, description="Plain realisations from which stratified finds its first direction. Default: 100"
@@ -80,8 +80,13 @@ class Estimation(Table):
 
     @property
     def fair_size(self) -> int | None:
-        """First realisations that are a fair sample where later ones are sought near the limit; None: all are."""
-        return {"stratified": self.pilot_size, "subset_simulation": self.level_size}.get(self.method)
+        """First realisations that are a fair sample where later ones are chosen by what came before; None: all are."""
+        fair = {
+            "two_phase": FIRST_OF_TWO_PHASES,
+            "stratified": self.pilot_size,
+            "subset_simulation": self.level_size,
+        }
+        return fair.get(self.method)
 
     def model_post_init(self, context: object) -> None:
         """Fill in what the method reads and is not given, without counting it among the given keys."""
@@ -102,10 +107,11 @@ DEFAULTS = {
     "level_probability": 0.1,
 }
 TOWARDS_LIMIT = ("stratified", "subset_simulation")  # methods whose realisations follow from others, nearer the limit
+FIRST_OF_TWO_PHASES = 32
 READERS = {
-    "coarser_cells_m": ("multilevel", "control_variate"),
+    "coarser_cells_m": ("multilevel", "control_variate", "two_phase"),
     "replicate_size": ("latin_hypercube", "sobol"),
-    "principal_components": ("latin_hypercube", "sobol", "control_variate", "stratified"),
+    "principal_components": ("latin_hypercube", "sobol", "control_variate", "two_phase", "stratified"),
     "pilot_size": ("stratified",),
     "level_size": ("subset_simulation",),
     "level_probability": ("subset_simulation",),

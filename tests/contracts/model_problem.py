@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import norm, qmc
 
-from rfmpm.estimators import ControlVariate, MonteCarlo, Multilevel, Replicated, Rows
+from rfmpm.estimators import ControlVariate, MonteCarlo, Multilevel, Replicated, Rows, TwoPhase
 
 WEIGHTS = np.array([0.6, 0.4, 0.2, 0.2])  # of the field's components
 OTHER, FINE_ONLY = 0.5, 0.15  # standard deviations of what the components do not explain; on level 0 alone
@@ -68,6 +68,8 @@ class Campaign:
 
     def run(self, estimator) -> Rows:
         """Carry out the stages of a campaign; the same as following `plan`, which passes them all at every call."""
+        if isinstance(estimator, TwoPhase):  # whose stages are no numbers
+            return self.follow(estimator)
         numbers = following = estimator.first_numbers()
         while following is not None:
             numbers = following
@@ -76,12 +78,16 @@ class Campaign:
 
     def follow(self, estimator) -> Rows:
         """Carry out a campaign plan by plan."""
-        numbers = [0] * len(self.levels)
-        while todo := estimator.plan(self.rows(numbers)):
+        everything, done = self.rows([len(y) for y in self.levels]), [np.zeros(0, int)] * len(self.levels)
+        while todo := estimator.plan(rows := everything.where(_held(everything, done))):
             for level, indices in todo:
-                assert indices.start == numbers[level]
-                numbers[level] = indices.stop
-        return self.rows(numbers)
+                assert not np.isin(indices, done[level]).any()
+                done[level] = np.union1d(done[level], indices)
+        return rows
+
+
+def _held(rows: Rows, done: list[np.ndarray]) -> np.ndarray:
+    return np.concatenate([np.isin(rows.index[rows.level == level], indices) for level, indices in enumerate(done)])
 
 
 MAKERS = {
@@ -90,6 +96,7 @@ MAKERS = {
     "multilevel": lambda question, campaign, n: Multilevel(question, 1, n),
     "control_variate": lambda question, campaign, n: ControlVariate(question, 1, campaign.features, n),
     "control_variate, levels alone": lambda question, campaign, n: ControlVariate(question, 1, None, n),
+    "two_phase": lambda question, campaign, n: TwoPhase(question, campaign.features, n),
     "control_variate, features alone": lambda question, campaign, n: ControlVariate(question, 0, campaign.features, n),
 }
 

@@ -30,7 +30,7 @@ def asked(name: str, **width) -> tuple[Model, Question, float]:
 
 
 def check(name: str, question: str, n: int | None, repeats: int = REPEATS, **width):
-    repeats = min(repeats, FITTED_REPEATS) if name.startswith("control_variate") else repeats
+    repeats = min(repeats, FITTED_REPEATS) if name.startswith(("control_variate", "two_phase")) else repeats
     model, wanted, truth = asked(question, **width)
     found = repeat(name, model, wanted, n, repeats)
     bias = abs(found.value.mean() - truth) / found.value.std(ddof=1)

@@ -56,6 +56,7 @@ def test_without_a_question_it_is_that_of_the_run_out_limit(study):
         (DESIGN, estimators.Replicated),
         ({"method": "multilevel", "coarser_cells_m": [1.0]}, estimators.Multilevel),
         ({"method": "control_variate", "principal_components": 3}, estimators.ControlVariate),
+        ({"method": "two_phase", "coarser_cells_m": [1.0]}, estimators.TwoPhase),
         ({"method": "stratified"}, estimators.Stratified),
         ({"method": "subset_simulation"}, SubsetSimulation),
     ],

@@ -2,13 +2,15 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from rfmpm.estimators.protocol import Estimator, Runs
+from rfmpm.estimators.levels import FOLDS
+from rfmpm.estimators.protocol import Estimator
 from rfmpm.estimators.rows import Rows
+
+LONGEST = 8  # draws over the rows of a bank
 
 Features = Callable[[range], np.ndarray]
 Make = Callable[[Features], Estimator]  # of the features of the realisations in the order in which they are drawn
@@ -19,8 +21,8 @@ class Bank:
     """Rows to draw from: the same realisations on one or several cell sizes.
 
     Attributes:
-        value: per level, shape (n_level,), n_level not decreasing; NaN where a realisation failed.
-        work: per level, time steps times points of each, shape (n_level,).
+        value: per level, shape (n,); NaN where a realisation failed.
+        work: per level, time steps times points of each, shape (n,).
         cost: per level, processor time of one realisation over that of one on level 0 [-].
         features: of all realisations, shape (n, d).
         block: realisations that stay together, the points of a replicate of a design; 1: independent ones.
@@ -33,13 +35,20 @@ class Bank:
     block: int = 1
 
     def order(self, generator: np.random.Generator) -> np.ndarray:
-        """Draw an order of all realisations in which those that level 0 holds come first, each part at random."""
-        edges = [0, *sorted({len(y) for y in self.value})]
-        pieces = [
-            generator.permutation(np.arange(first, stop).reshape(-1, self.block)).ravel()
-            for first, stop in pairwise(edges)
-        ]
-        return np.concatenate(pieces)
+        """Draw realisations with replacement, LONGEST times as many as there are.
+
+        The rows are the population then, and their mean or share is the truth. Copies of one realisation share a fold
+        of the estimators, which would otherwise learn from the very rows that they predict.
+        """
+        blocks = generator.permutation(len(self.value[0]) // self.block)
+        if self.block > 1:
+            blocks = generator.choice(blocks, LONGEST * blocks.size)
+        else:
+            parts = [blocks[fold::FOLDS] for fold in range(FOLDS)]
+            blocks = np.stack(
+                [generator.choice(part, LONGEST * blocks.size // FOLDS) for part in parts], axis=1
+            ).ravel()
+        return (blocks[:, None] * self.block + np.arange(self.block)).ravel()
 
 
 class Outcome(NamedTuple):
@@ -57,39 +66,33 @@ def carry_out(make: Make, bank: Bank, order: np.ndarray) -> Outcome:
     Args:
         make: of the estimator, given the features.
         bank: of the rows.
-        order: of the realisations, shape (n,): index i of the campaign is the realisation order[i].
+        order: of the realisations, shape (m,): index i of the campaign is the realisation order[i].
 
     Returns:
         Outcome.
 
     Raises:
-        IndexError: if it plans more than the bank holds.
+        IndexError: if it plans more than were drawn.
     """
     estimator = make(lambda indices: bank.features[order[indices.start : indices.stop]])
-    numbers = [0] * len(bank.value)
-    rows = _rows(bank, order, numbers)
+    done = [np.zeros(0, int) for _ in bank.value]
+    rows = _rows(bank, order, done)
     while planned := estimator.plan(rows):
-        for runs in planned:
-            numbers[runs.level] = _after(runs, numbers[runs.level], len(bank.value[runs.level]))
-        rows = _rows(bank, order, numbers)
+        for level, indices in planned:
+            done[level] = np.union1d(done[level], indices)
+        rows = _rows(bank, order, done)
     found = estimator.estimate(rows)
-    cost = sum(n * cost for n, cost in zip(numbers, bank.cost, strict=True))
+    cost = sum(len(indices) * cost for indices, cost in zip(done, bank.cost, strict=True))
     return Outcome(found.value, found.lower, found.upper, cost)
 
 
-def _after(runs: Runs, number: int, held: int) -> int:
-    if runs.indices.stop > held:
-        raise IndexError(f"level {runs.level}: {runs.indices.stop} realisations planned, {held} at hand")
-    return max(number, runs.indices.stop)
-
-
-def _rows(bank: Bank, order: np.ndarray, numbers: Sequence[int]) -> Rows:
-    level = np.repeat(np.arange(len(numbers)), numbers)
-    index = np.concatenate([np.arange(n) for n in numbers])
+def _rows(bank: Bank, order: np.ndarray, done: Sequence[np.ndarray]) -> Rows:
+    level = np.repeat(np.arange(len(done)), [len(indices) for indices in done])
     value, work = (
-        np.concatenate([column[k][order[:n]] for k, n in enumerate(numbers)]) for column in (bank.value, bank.work)
+        np.concatenate([column[k][order[indices]] for k, indices in enumerate(done)])
+        for column in (bank.value, bank.work)
     )
-    return Rows(level, index, value, np.zeros(level.size, bool), work)
+    return Rows(level, np.concatenate(done), value, np.zeros(level.size, bool), work)
 
 
 def repeats(make: Make, bank: Bank, number: int, seed: int) -> Iterator[Outcome]:

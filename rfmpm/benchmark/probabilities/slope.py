@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
@@ -10,7 +9,7 @@ from rfmpm import planning, realisation
 from rfmpm.benchmark.probabilities.bank import Column
 from rfmpm.benchmark.probabilities.cases import COARSE, COMPONENTS, FINE, REPLICATE
 from rfmpm.benchmark.probabilities.repeats import Bank, Make
-from rfmpm.estimators import ControlVariate, MonteCarlo, Multilevel, Question, Replicated, Rows
+from rfmpm.estimators import ControlVariate, MonteCarlo, Multilevel, Question, Replicated, TwoPhase
 from rfmpm.planning.components import FieldFeatures
 from rfmpm.study import Study
 
@@ -21,14 +20,6 @@ QUESTIONS = {
     "95 % quantile": Question("run_out", "quantile", probability=0.95),
 }
 TRIALS = 12  # realisations whose processor time on both cell sizes is compared
-
-
-class Reference(NamedTuple):
-    """The best that is known of an answer."""
-
-    value: float
-    standard_error: float
-    deviation: float  # root mean square error of plain Monte Carlo times the root of its realisations
 
 
 def banks(studies: dict[str, Study], columns: dict[str, Column]) -> dict[str, Bank]:
@@ -43,13 +34,15 @@ def banks(studies: dict[str, Study], columns: dict[str, Column]) -> dict[str, Ba
     """
     features = FieldFeatures(_asking(studies["fine"]))
     scores = features(range(len(columns["coarse"].run_out)))
+    pairs = len(columns["fine"].run_out)
     points = planning.point_counts(studies["fine"])[0], planning.point_counts(studies["coarse"])[0]
     both = [columns["fine"], columns["coarse"]]
     value = [column.run_out for column in both]
     work = [column.steps * count for column, count in zip(both, points, strict=True)]
+    cut = [[column[:pairs] for column in per_level] for per_level in (value, work)]
+    found = {"pair": Bank(*cut, (1.0, cost_ratio(studies)), whitened(scores[:pairs]))}
+    found["coarse"] = Bank(value[1:], work[1:], (1.0,), whitened(scores))
     none = np.zeros((0, 0))
-    found = {"pair": Bank(value, work, (1.0, cost_ratio(studies)), scores)}
-    found["coarse"] = Bank(value[1:], work[1:], (1.0,), scores)
     for name in ("latin_hypercube", "sobol"):
         column = columns[name]
         found[name] = Bank([column.run_out], [column.steps * points[1]], (1.0,), none, REPLICATE)
@@ -83,27 +76,19 @@ def cost_ratio(studies: dict[str, Study]) -> float:
     return float(seconds[1] / seconds[0])
 
 
-def reference(bank: Bank, question: Question) -> Reference:
-    """Estimate from all rows of a bank: on one level their plain estimate, on two control variates on all of them."""
-    level = np.repeat(np.arange(len(bank.value)), [len(y) for y in bank.value])
-    index = np.concatenate([np.arange(len(y)) for y in bank.value])
-    rows = Rows(level, index, np.concatenate(bank.value), np.zeros(level.size, bool), np.concatenate(bank.work))
-    own, n = bank.value[0], len(bank.value[0])
-    if len(bank.value) > 1:
-        estimator = ControlVariate(question, 1, lambda span: bank.features[span.start : span.stop], n)
-    else:
-        estimator = MonteCarlo(question, n)
-    found = estimator.estimate(rows)
-    error = (found.upper - found.lower) / (2.0 * 1.96)
-    return Reference(found.value, error, _deviation(own[~np.isnan(own)], question))
+def whitened(scores: np.ndarray) -> np.ndarray:
+    """Shift and turn components so that their means and covariances, which estimators know, hold in the bank too."""
+    scores = scores - scores.mean(axis=0)
+    return np.linalg.solve(np.linalg.cholesky(scores.T @ scores / len(scores)), scores.T).T
 
 
-def _deviation(values: np.ndarray, question: Question) -> float:
+def truth(values: np.ndarray, question: Question) -> float:
+    """What a question's answer is in a population."""
     if question.kind == "mean":
-        return float(values.std())
+        return float(values.mean())
     if question.kind == "exceedance":
-        return float(np.std(values > question.limit))
-    return float("nan")
+        return float(np.mean(values > question.limit))
+    return float(np.quantile(values, question.probability, method="inverted_cdf"))
 
 
 def makers(question: Question, number: int) -> dict[str, tuple[str, Make]]:
@@ -127,4 +112,5 @@ def makers(question: Question, number: int) -> dict[str, tuple[str, Make]]:
         "multilevel": ("pair", lambda features: Multilevel(question, 1, number)),
         "coarse runs as control variate": ("pair", lambda features: ControlVariate(question, 1, None, number)),
         "coarse runs and components": ("pair", lambda features: ControlVariate(question, 1, features, number)),
+        "two phases and components": ("pair", lambda features: TwoPhase(question, features, number)),
     }

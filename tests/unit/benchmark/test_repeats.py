@@ -3,24 +3,24 @@
 import numpy as np
 import pytest
 
-from rfmpm.benchmark.probabilities.repeats import Bank, Outcome, carry_out, judge, repeats
+from rfmpm.benchmark.probabilities.repeats import LONGEST, Bank, Outcome, carry_out, judge, repeats
 from rfmpm.estimators import MonteCarlo, Multilevel, Question
+from rfmpm.estimators.levels import FOLDS
 
 MEAN = Question("run_out", "mean")
 
 
-def bank(fine: int = 300, coarse: int = 4000, block: int = 1) -> Bank:
+def bank(n: int = 4000, block: int = 1) -> Bank:
     generator = np.random.default_rng(7)
-    y = generator.standard_normal(coarse)
-    levels = [y[:fine] + 0.1 * generator.standard_normal(fine), y]
-    return Bank(levels, [np.full(fine, 8.0), np.full(coarse, 1.0)], (1.0, 0.125), y[:, None], block)
+    y = generator.standard_normal(n)
+    levels = [y + 0.1 * generator.standard_normal(n), y]
+    return Bank(levels, [np.full(n, 8.0), np.full(n, 1.0)], (1.0, 0.125), y[:, None], block)
 
 
 def test_index_i_is_the_ith_realisation_of_the_order():
     rows, order = bank(), np.arange(4000)[::-1]
-    order = np.concatenate([order[order < 300], order[order >= 300]])
     found = carry_out(lambda features: MonteCarlo(MEAN, 10), rows, order)
-    assert found.value == pytest.approx(rows.value[0][290:300].mean(), rel=1e-12)  # identity
+    assert found.value == pytest.approx(rows.value[0][3990:4000].mean(), rel=1e-12)  # identity
     assert found.cost == 10.0
 
 
@@ -32,22 +32,30 @@ def test_the_coarser_realisations_count_with_their_cost():
 
 
 def test_features_follow_the_order():
-    rows, order, seen = bank(), np.arange(4000)[::-1].copy(), []
-    carry_out(lambda features: seen.append(features(range(2, 5))) or MonteCarlo(MEAN, 2), rows, np.roll(order, 300))
-    assert np.array_equal(seen[0], rows.features[np.roll(order, 300)[2:5]])
+    rows, order, seen = bank(), np.arange(4000)[::-1], []
+    carry_out(lambda features: seen.append(features(range(2, 5))) or MonteCarlo(MEAN, 2), rows, order)
+    assert np.array_equal(seen[0], rows.features[order[2:5]])
 
 
-def test_what_the_bank_does_not_hold_is_an_error():
-    with pytest.raises(IndexError, match="301 realisations planned, 300 at hand"):
-        carry_out(lambda features: MonteCarlo(MEAN, 301), bank(), np.arange(4000))
+def test_more_than_was_drawn_is_an_error():
+    with pytest.raises(IndexError):
+        carry_out(lambda features: MonteCarlo(MEAN, 4001), bank(), np.arange(4000))
 
 
-def test_an_order_begins_with_what_level_0_holds_and_keeps_replicates_together():
-    order = bank(fine=320, block=32).order(np.random.default_rng(1))
-    assert sorted(order[:320]) == list(range(320))
-    assert sorted(order) == list(range(4000))
-    assert np.array_equal(order.reshape(-1, 32) % 32, np.tile(np.arange(32), (125, 1)))
-    assert not np.array_equal(order, np.arange(4000))
+def test_draws_are_with_replacement_and_keep_copies_in_one_fold():
+    order = bank(400).order(np.random.default_rng(1))
+    assert order.size == LONGEST * 400
+    fold = np.arange(order.size) % FOLDS
+    for realisation in range(400):
+        assert np.unique(fold[order == realisation]).size <= 1
+    counts = np.bincount(order, minlength=400)  # of independent draws: mean and variance LONGEST
+    assert abs(counts.var() - LONGEST) < 4.0 * LONGEST * np.sqrt(2.0 / 400)
+
+
+def test_draws_keep_replicates_together():
+    order = bank(3200, block=32).order(np.random.default_rng(1))
+    assert np.array_equal(order.reshape(-1, 32) % 32, np.tile(np.arange(32), (LONGEST * 100, 1)))
+    assert np.unique(order[::32]).size > 90
 
 
 def test_repeats_draw_anew():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rfmpm.estimators import Estimate, Exceedances, Given, Question, Rows
+from rfmpm.estimators import Estimate, Exceedances, Question, Rows
 
 ROWS = Rows(
     np.zeros(4, int), np.arange(4), np.array([1.0, 6.0, np.nan, 2.0]), np.array([False, False, True, True]), np.ones(4)
@@ -12,14 +12,6 @@ ROWS = Rows(
 
 def test_exceedances_of_failed_and_censored_rows():
     np.testing.assert_array_equal(Exceedances(np.array([0.5, 5.0]))(ROWS), [[1, 0], [1, 1], [np.nan] * 2, [1, 1]])
-
-
-def test_given_outcomes_are_one_line_per_row():
-    reached = np.eye(4)[:, :2]
-    np.testing.assert_array_equal(Given(reached)(ROWS)[[0, 1, 3]], reached[[0, 1, 3]])
-    assert np.isnan(Given(reached)(ROWS)[2]).all()
-    with pytest.raises(ValueError, match="3 lines of outcomes for 4 rows"):
-        Given(reached[:3])(ROWS)
 
 
 @pytest.mark.parametrize(

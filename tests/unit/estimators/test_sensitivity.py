@@ -89,11 +89,6 @@ def test_base_points_with_failed_or_missing_simulations_are_left_out_and_counted
     assert sobol_indices(found).dropped == 1
 
 
-def test_an_exceedance_counts_censored_values_as_exceeding():
-    value, is_censored = np.array([1.0, 6.0, 4.0]), np.array([False, False, True])
-    np.testing.assert_array_equal(arrange(rows_of(value, None, is_censored), 1, limit=5.0).values, [[0.0, 1.0, 1.0]])
-
-
 def test_other_levels_are_no_part_of_a_design():
     both = Rows(np.repeat([0, 1], 3), np.tile(np.arange(3), 2), np.arange(6.0), np.zeros(6, bool), np.ones(6))
     np.testing.assert_array_equal(arrange(both, 1).values, [[0.0, 1.0, 2.0]])
@@ -132,7 +127,6 @@ def test_indices_from_given_data():
     share = 4.0 * sqrt(0.05 * 0.95 / repeats)
     assert np.all(hits[:2] > 0.94 - share)  # less the bias of the classes
     assert abs(alarms - 0.05) < share
-    assert abs(np.mean([abs(o.rank_correlation[2]) > o.rank_noise for o in found]) - 0.05) < share
 
 
 def test_given_data_leave_failed_rows_out():
@@ -148,13 +142,3 @@ def test_given_data_leave_failed_rows_out():
     assert np.isnan(given_data_indices(x, rows_of(np.ones(400))).first).all()
     with pytest.raises(ValueError, match="400 lines of uncertain numbers for 3 rows"):
         given_data_indices(x, rows_of([1.0, 2.0, 3.0]))
-
-
-def test_rank_correlation_is_spearman_s():
-    from scipy.stats import spearmanr
-
-    x, rows = linear(np.random.default_rng(6))
-    with_ties = rows_of(np.round(np.maximum(rows.value, 0.0)))
-    found = given_data_indices(x, with_ties).rank_correlation
-    expected = [spearmanr(one, with_ties.value).statistic for one in x.T]
-    np.testing.assert_allclose(found, expected, rtol=1e-10)

@@ -9,7 +9,7 @@ import rfmpm
 from rfmpm.random_fields import principal_components as components
 from rfmpm.random_fields import properties
 from rfmpm.random_fields.methods import METHODS
-from rfmpm.random_fields.principal_components import linear_map, principal_components, scores
+from rfmpm.random_fields.principal_components import linear_map, principal_components
 from rfmpm.random_fields.properties import Site
 
 CONFIGS = Path(__file__).parents[3] / "configs"
@@ -77,13 +77,6 @@ def test_a_few_of_many_are_found_like_all_of_them(site, monkeypatch):
 def test_more_than_there_are_gives_all(site):
     fields = prepared(site, {"random_field.cohesion.method": "cholesky"})
     assert principal_components(fields, 1000).shares.sum() == pytest.approx(1.0, abs=ROUNDING)
-
-
-def test_scores_are_along_the_directions(site):
-    directions = principal_components(prepared(site, {}), 5).directions
-    eta = np.random.default_rng(1).standard_normal((3, 5))
-    np.testing.assert_allclose(scores(directions, eta @ directions), eta, rtol=0, atol=ROUNDING)
-    np.testing.assert_allclose(scores(directions, eta[0] @ directions), eta[0], rtol=0, atol=ROUNDING)
 
 
 def test_the_store_gives_the_same_bits_and_heals(site, tmp_path, monkeypatch):

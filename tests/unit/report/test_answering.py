@@ -98,3 +98,14 @@ def test_a_campaign_with_a_question_ends_with_its_answer_alone(study, ensemble):
     assert "the answer is 1.0 m too low" in cells
     assert cost.startswith("cost")
     assert cost.endswith(f"0 of {4 * PAIRS} failed)")
+
+
+def test_of_two_phases_the_page_shows_the_first_realisations_and_the_answer_uses_all(study, ensemble):
+    phases = study.with_changes({"study.until.at_most": 96, "estimator.method": "two_phase"})
+    numbers = analyse(ensemble, phases)
+    assert (numbers.held, numbers.used) == (PAIRS, 32)
+    assert numbers.answer.n == PAIRS
+    assert "double sampling" in numbers.answer.method
+    assert numbers.discretisation.n == 32
+    assert numbers.settling.value[-1] == numbers.answer.value
+    assert numbers.mean_run_out.n == 32  # another question than the study's, but for which the rows were not chosen
