@@ -28,15 +28,19 @@ def section_of(scene: Any, points_per_cell: int) -> Section:
     Sliding on the floor itself is left out: soil that lies on it is taken to hold to it by its own strength.
 
     Args:
-        scene: `body`, `points` and `cell` are read.
+        scene: `body`, `points`, `load` and `cell` are read.
         points_per_cell: in a full cell.
 
     Returns:
         The section.
     """
     outline, points = scene.body.outline, np.column_stack(scene.points.position)
-    ground = ground_of(outline, scene.body.length)
-    return Section(ground, float(outline[:, 1].min()), points, scene.cell / sqrt(points_per_cell))
+    ground, square = ground_of(outline, scene.body.length), scene.cell / sqrt(points_per_cell)
+    section = Section(ground, float(outline[:, 1].min()), points, square)
+    if scene.load is None:
+        return section
+    left = np.floor(points[scene.load.point, 0] / square + 1e-9) * square
+    return section._replace(load=np.column_stack([left, left + square, scene.load.force / square]))
 
 
 def ground_of(outline: np.ndarray, length: float) -> np.ndarray:

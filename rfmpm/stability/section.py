@@ -18,6 +18,7 @@ class Section(NamedTuple):
         points: material points, shape (n, 2) [m].
         square: side of the square that a material point stands for [m].
         crack: depth of the tension crack in which every slip surface begins [m].
+        load: pressures downwards on the ground, none over another: from x, to x [m] and pressure [Pa], shape (m, 3).
     """
 
     ground: np.ndarray
@@ -25,6 +26,7 @@ class Section(NamedTuple):
     points: np.ndarray
     square: float
     crack: float = 0.0
+    load: np.ndarray = np.empty((0, 3))
 
 
 class Ground(NamedTuple):
@@ -36,6 +38,8 @@ class Ground(NamedTuple):
     area: np.ndarray  # integral of y over x from the left end [m2]
     base: float  # [m]
     crack: float  # [m]
+    load_x: np.ndarray  # ends of the loads on it from left to right; empty where there is none, shape (2 m,) [m]
+    load: np.ndarray  # force of what lies to the left of each, shape (2 m,) [N/m]
 
 
 class Soil(NamedTuple):
@@ -107,9 +111,20 @@ def _side(section: Section, ground: np.ndarray, sign: float) -> Side:
     x, y = ground[:: int(sign)].T * np.array([[sign], [1.0]])
     along = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
     area = np.concatenate([[0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(x))])
-    profile = Ground(x.copy(), y.copy(), along, area, float(section.base), float(section.crack))
+    profile = Ground(
+        x.copy(), y.copy(), along, area, float(section.base), float(section.crack), *_loads(section.load, sign)
+    )
     left, bottom, point_of = _points_of_squares(section.points * [sign, 1.0], section.square)
     return Side(profile, left, bottom, section.square, point_of, sign)
+
+
+def _loads(load: np.ndarray, sign: float) -> tuple[np.ndarray, np.ndarray]:
+    """Ends of the loads of a section from left to right, and the force of what lies to the left of each."""
+    ends = np.sort(sign * load[:, :2], axis=1)
+    order = np.argsort(ends[:, 0])
+    force = np.zeros(ends.shape)
+    force[:, 1] = load[order, 2] * np.ptp(ends[order], axis=1)
+    return ends[order].ravel(), np.cumsum(force)
 
 
 def _points_of_squares(points: np.ndarray, square: float) -> tuple[float, float, np.ndarray]:

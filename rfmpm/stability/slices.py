@@ -47,6 +47,19 @@ def weight_below(soil, column, y):
 
 
 @kernel
+def load_before(ground, x):
+    """Force of the load on the ground to the left of x."""
+    last = len(ground.load_x) - 1
+    if last < 0 or x <= ground.load_x[0]:
+        return 0.0
+    if x >= ground.load_x[last]:
+        return ground.load[last]
+    j = np.searchsorted(ground.load_x, x, "right") - 1
+    share = (x - ground.load_x[j]) / (ground.load_x[j + 1] - ground.load_x[j])
+    return ground.load[j] + share * (ground.load[j + 1] - ground.load[j])
+
+
+@kernel
 def cut(ground, soil, x, y, count, slices):
     """Cut the soil above the line through x, y, shape (count + 1,), into slices between its points.
 
@@ -77,6 +90,7 @@ def cut(ground, soil, x, y, count, slices):
         length = np.sqrt(width * width + drop * drop)
         column = min(max(int((x[i] - 0.5 * width - soil.left) * per_square), 0), columns - 1)
         slices.weight[i - 1] = width * (weight_below(soil, column, top) - weight_below(soil, column, middle))
+        slices.weight[i - 1] += load_before(ground, x[i]) - load_before(ground, x[i - 1])
         samples = int(length * per_square) + 1
         cohesion, friction = 0.0, 0.0
         for k in range(samples):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rfmpm.realisation import prepare, run, simulate
-from rfmpm.stability import METHODS, strength_of
+from rfmpm.stability import METHODS, section_of, strength_of
 from rfmpm.stability.limit_equilibrium import ASSUMPTIONS
 from rfmpm.study import StudyError, load_study
 from rfmpm.study.models import Quantities
@@ -110,3 +110,16 @@ def test_an_elastic_soil_has_none():
 def test_an_unknown_method_is_refused_with_the_choices():
     with pytest.raises(StudyError, match=r'"morgenstern_price", "strength_reduction", true \(did you mean "bishop"'):
         study(**{"quantities.factor_of_safety": "bishops"})
+
+
+def test_the_load_of_a_study_is_on_the_ground_of_its_section():
+    load = {"from_m": 1.0, "to_m": 2.5, "pressure_kpa": 15.0}
+    prepared = prepare(study(load=[load]))
+    section = section_of(prepared.scene, prepared.study.discretisation.points_per_cell)
+    start, end, pressure = section.load.T
+    assert start.min() == pytest.approx(1.0, abs=1e-9)
+    assert end.max() == pytest.approx(2.5, abs=1e-9)
+    assert np.sum((end - start) * pressure) == pytest.approx(15e3 * 1.5, rel=1e-12)
+    plain = prepare(study())
+    with_load, without = (METHODS["bishop"](one, {}).factor for one in (prepared, plain))
+    assert with_load < without

@@ -207,3 +207,27 @@ def test_arcs_do_not_overhang():
         entry, leaving = sorted(share[:2] * side.ground.along[-1])
         *_, radius, start, _ = arc(side.ground, entry, leaving, share[2])
         assert radius == 0.0 or start >= -0.5 * pi - 1e-9
+
+
+@pytest.mark.parametrize("is_mirrored", [False, True])
+def test_a_load_on_the_ground_drives_what_lies_below_it(is_mirrored):
+    section = slope(30.0)._replace(load=np.array([(2.0, 3.0, 20e3), (0.5, 2.0, 10e3)]))
+    side = sides_of(section)[0]
+    line = Line(np.empty(201), np.empty(201))
+    assert draw(side.ground, arc(side.ground, 1.0, side.ground.along[-1], 0.5), 200, line)
+    surface = np.column_stack(line)
+    if is_mirrored:
+        load = section.load * [-1.0, -1.0, 1.0]
+        section = section._replace(
+            ground=section.ground[::-1] * [-1.0, 1.0], points=section.points * [-1.0, 1.0], load=load
+        )
+        side = sides_of(section)[0]
+    strength = uniform(section, 5e3, 0.0)
+    without = sides_of(section._replace(load=np.empty((0, 3))))[0]
+    loaded, free = (factor_along(one, *strength, surface, "bishop") for one in (side, without))
+    x, y = surface.T
+    length = np.hypot(np.diff(x), np.diff(y))
+    under = [np.maximum(np.minimum(x[1:], end) - np.maximum(x[:-1], start), 0.0) for start, end in ((0.5, 2), (2, 3))]
+    driving = np.sum((10e3 * under[0] + 20e3 * under[1]) * -np.diff(y) / length)
+    # Without friction the factor is cohesion times length over the sum of W sin(alpha), to which the load adds its own.
+    assert 1.0 / loaded - 1.0 / free == pytest.approx(driving / (5e3 * length.sum()), rel=1e-9)
