@@ -10,7 +10,7 @@ from rfmpm.estimators.levels import FOLDS
 from rfmpm.estimators.protocol import Estimator
 from rfmpm.estimators.rows import Rows
 
-LONGEST = 8  # draws over the rows of a bank
+LONGEST, LEAST_DRAWN = 8, 16_000  # draws over the rows of a bank; draws
 
 Features = Callable[[range], np.ndarray]
 Make = Callable[[Features], Estimator]  # of the features of the realisations in the order in which they are drawn
@@ -35,19 +35,18 @@ class Bank:
     block: int = 1
 
     def order(self, generator: np.random.Generator) -> np.ndarray:
-        """Draw realisations with replacement, LONGEST times as many as there are.
+        """Draw realisations with replacement, LONGEST times as many as there are, at least LEAST_DRAWN.
 
         The rows are the population then, and their mean or share is the truth. Copies of one realisation share a fold
         of the estimators, which would otherwise learn from the very rows that they predict.
         """
         blocks = generator.permutation(len(self.value[0]) // self.block)
+        drawn = max(LONGEST * blocks.size, LEAST_DRAWN // self.block)
         if self.block > 1:
-            blocks = generator.choice(blocks, LONGEST * blocks.size)
+            blocks = generator.choice(blocks, drawn)
         else:
             parts = [blocks[fold::FOLDS] for fold in range(FOLDS)]
-            blocks = np.stack(
-                [generator.choice(part, LONGEST * blocks.size // FOLDS) for part in parts], axis=1
-            ).ravel()
+            blocks = np.stack([generator.choice(part, drawn // FOLDS) for part in parts], axis=1).ravel()
         return (blocks[:, None] * self.block + np.arange(self.block)).ravel()
 
 
