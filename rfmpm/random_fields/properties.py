@@ -34,7 +34,7 @@ class Site(NamedTuple):
     square: float  # side of the square that a material point stands for [m]
     crest: float  # height of the crest, from which depths are measured [m]
     extent: tuple[float, float]  # length and height from the origin that squares of any cell size may touch [m]
-    counts: tuple[int, ...]  # points of each material, which follow each other in the order of the study
+    counts: tuple[int, ...] = ()  # points of each material, in the order of the study; empty: of one
 
     @property
     def middles(self) -> np.ndarray:
@@ -43,7 +43,7 @@ class Site(NamedTuple):
 
     def of_material(self, number: int) -> "Site":
         """Where fields of one material are needed."""
-        if len(self.counts) == 1:
+        if len(self.counts) < 2:
             return self
         return self._replace(
             points=self.points[slice(*_span(self.counts, number))], counts=self.counts[number : number + 1]
@@ -138,7 +138,7 @@ def prepare(study: Any, site: Site, store: Path | None = None, known: Properties
         before = [part for entry in (*earlier, *entries.values()) for part in entry.parts]
         try:
             own = _prepare_property(name, settings, study.material[number], site.of_material(number), store, before)
-            entries[name] = own if len(site.counts) == 1 else _placed(own, study.material, site.counts, number)
+            entries[name] = own if len(site.counts) < 2 else _placed(own, study.material, site.counts, number)
         except ValueError as error:
             raise ValueError(f"random_field.{name}: {error}") from None
     if not study.random_field_correlation:

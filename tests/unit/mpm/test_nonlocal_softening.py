@@ -26,7 +26,7 @@ def averaged(strain, cell=0.125, shape="quadratic_bspline", before=0.0):
     points = Points(Vector(x, y), Vector(nothing, nothing), volume, volume, Tensor(nothing, nothing, nothing, nothing))
     history = NonlocalHistory(strain(x), np.full_like(volume, before))
     box = 0, axes.x.cells, 0, axes.y.cells
-    average_softening(points, history, axes, averaging(LENGTH, axes), box)
+    average_softening(points, history, axes, averaging(LENGTH, history, axes), box)
     return x, y, history
 
 
