@@ -26,7 +26,8 @@ def surface_of(polygon: Any, length: float, toe: float | None = None, crest_edge
     """Find the ground surface of a body, seen from above.
 
     The face is what descends to the right at least half as steeply as the steepest stretch does, by angle: from the
-    first such stretch to the last. A body without one has its toe and crest at its right end.
+    first such stretch to the last. Soil that ends upright after ground that is level for longer than this end is high
+    is cut off there, which is no face if there is another. A body without a face has toe and crest at its right end.
 
     Args:
         polygon: of the body, one or several [m].
@@ -42,6 +43,9 @@ def surface_of(polygon: Any, length: float, toe: float | None = None, crest_edge
     run, fall = np.diff(line[:, 0]), -np.diff(line[:, 1])
     angle = np.arctan2(fall, run)
     descends = angle > 1e-9
+    end = np.flatnonzero(descends)[-1:]
+    if descends.sum() > 1 and run[end] == 0.0 and angle[end - 1] == 0.0 and run[end - 1] > fall[end]:
+        angle[end], descends[end] = 0.0, False
     found_crest = found_toe = float(line[-1, 0])
     if descends.any():
         face = np.flatnonzero(angle >= STEEP * angle.max() - 1e-9)

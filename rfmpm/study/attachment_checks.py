@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 
 from rfmpm.ground import body_polygon
-from rfmpm.study.bodies import geometry_of, regions_in, size_of
+from rfmpm.study.bodies import geometry_of, size_of, sound_regions_in
 from rfmpm.study.errors import Problem
 from rfmpm.study.known import Known, path_of, problem
 
@@ -28,7 +28,7 @@ def _obstacles_stand_clear(known: Known) -> Iterator[Problem]:
         return
     import shapely
 
-    body, cell = body_polygon(geometry_of(known), regions_in(known)), known["discretisation.cell_m"]
+    body, cell = body_polygon(geometry_of(known), sound_regions_in(known)), known["discretisation.cell_m"]
     for index in range(len(known["obstacle"])):
         path = f"obstacle.{index}.corners_m"
         corners = known[path]

@@ -26,8 +26,19 @@ def geometry_of(known: Known) -> Any:
 
 
 def regions_in(known: Known) -> list[Region]:
-    """The regions of a study; Unknown where they cannot be told."""
+    """The regions of a study, sound or not; Unknown where they cannot be told."""
     return _regions(geometry_of(known), known["material.0.name"], known["discretisation.cell_m"])
+
+
+def sound_regions_in(known: Known) -> list[Region]:
+    """The regions of a study; Unknown where one of them, or of the cuts, crosses itself."""
+    import shapely
+
+    regions = regions_in(known)
+    cuts = [shapely.Polygon(cut.corners_m) for cut in getattr(geometry_of(known), "cut", None) or ()]
+    if not all(polygon.is_valid for polygon in (*(region.polygon for region in regions), *cuts)):
+        raise Unknown("geometry")
+    return regions
 
 
 @lru_cache(maxsize=64)
@@ -45,17 +56,14 @@ def size_of(known: Known) -> Size:
     geometry = geometry_of(known)
     if is_plain(geometry):
         return size_of_body(geometry)
-    regions = regions_in(known)
-    if not all(region.polygon.is_valid for region in regions):
-        raise Unknown("geometry")
-    return size_of_body(geometry, regions)
+    return size_of_body(geometry, sound_regions_in(known))
 
 
 def ground_of(known: Known) -> np.ndarray:
     """Corners of the ground surface from left to right, shape (k, 2) [m]."""
     geometry, size = geometry_of(known), size_of(known)
     if not is_plain(geometry):
-        return surface_of(body_polygon(geometry, regions_in(known)), size.length).line
+        return surface_of(body_polygon(geometry, sound_regions_in(known)), size.length).line
     crest = geometry.crest_m if geometry.kind == "slope" else geometry.width_m
     return np.array([(0.0, size.height), (crest, size.height), (size.length, 0.0)])
 
@@ -69,6 +77,6 @@ def hull_of(known: Known, material: str | None = None) -> list[Place]:
     """Corners of the convex hull of the body, or of the regions of one material, anticlockwise [m]."""
     import shapely
 
-    polygons = [region.polygon for region in regions_in(known) if material in (None, region.material)]
+    polygons = [region.polygon for region in sound_regions_in(known) if material in (None, region.material)]
     hull = shapely.orient_polygons(shapely.union_all(polygons).convex_hull)
     return [(float(x), float(y)) for x, y in shapely.get_coordinates(hull)[:-1]]

@@ -93,3 +93,11 @@ def test_a_wall_stops_a_slide():
 def test_what_does_not_fit_is_refused(changes, words):
     with pytest.raises(StudyError, match=words.replace(".", r"\.")):
         load_study(tables(region("all", WHOLE)) | changes)
+
+
+def test_an_obstacle_beside_soil_that_crosses_itself_is_no_second_fault():
+    crossed = [[0, 0], [7, 0], [3, 4], [6, -1], [0, 4]]
+    obstacle = {"obstacle": [{"corners_m": [[9, 0], [10, 0], [10, 2], [9, 2]]}]}
+    with pytest.raises(StudyError, match="crosses or touches itself") as refused:
+        load_study(tables(region("all", crossed)) | obstacle)
+    assert not any(problem.startswith("obstacle") for problem in refused.value.problems)

@@ -74,6 +74,8 @@ def test_what_is_cut_is_filled_apart():
     [
         (WHOLE, 6.0, 3.0, 7.0),
         ([[0, 0], [12, 0], [12, 2], [7, 2], [3, 6], [0, 6]], 0.0, 3.0, 7.0),  # on a foundation up to the wall
+        ([[0, 0], [12, 0], [12, 2], [7, 2], [3, 6], [0, 6]], 6.0, 3.0, 7.0),  # on one that ends before the wall
+        ([[0, 0], [9, 0], [9, 2], [7.5, 2], [3.5, 6], [0, 6]], 6.0, 3.5, 9.0),  # with a bench above an upright face
         ([[0, 0], [9, 0], [7, 2], [6, 2], [4, 4], [0, 4]], 6.0, 4.0, 9.0),  # with a bench
         ([[0, 0], [20, 0], [18, 2], [4, 6], [0, 6]], 6.0, 18.0, 20.0),  # a long slope with a steep cut at its end
         ([[0, 0], [4, 0], [4, 3], [0, 3]], 6.0, 4.0, 4.0),  # upright
