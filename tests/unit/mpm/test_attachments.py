@@ -96,8 +96,8 @@ def test_what_does_not_fit_is_refused(changes, words):
 
 
 def test_an_obstacle_beside_soil_that_crosses_itself_is_no_second_fault():
-    crossed = [[0, 0], [7, 0], [3, 4], [6, -1], [0, 4]]
-    obstacle = {"obstacle": [{"corners_m": [[9, 0], [10, 0], [10, 2], [9, 2]]}]}
+    below, crossed = [[0, 0], [25, 0], [25, 2], [0, 2]], [[0, 2], [15, 2], [10, 7], [12, 1], [0, 7]]
+    obstacle = {"obstacle": [{"corners_m": [[20, 2], [21, 2], [21, 6], [20, 6]]}]}
     with pytest.raises(StudyError, match="crosses or touches itself") as refused:
-        load_study(tables(region("all", crossed)) | obstacle)
+        load_study(tables(region("below", below), region("above", crossed)) | obstacle)
     assert not any(problem.startswith("obstacle") for problem in refused.value.problems)
