@@ -7,45 +7,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rfmpm.benchmark.stability.case import SLOPE, random_strength
 from rfmpm.realisation import prepare, simulate
 from rfmpm.study import load_study
 
-CELL = 0.5  # [m]
 COUNT, COUNT_OF_OTHERS = 500, 100
 DISPLACEMENTS = (0.5, 2.0, 5.0)  # [m]
 STUDY = {
+    **SLOPE,
     "study": {"name": "factor of safety against displacement", "seed": 20160901},
-    "geometry": {"kind": "slope", "height_m": 5.0, "crest_m": 10.0, "angle_deg": 45.0, "foreland_m": 25.0},
-    "discretisation": {"cell_m": CELL, "points_per_cell": 4, "shape": "quadratic_bspline"},
-    "boundary": {"base": {"kind": "friction", "coefficient": 0.3}, "sides": {"kind": "roller"}},
-    "material": [
-        {
-            "name": "clay",
-            "law": "von_mises",
-            "unit_weight_kn_m3": 20.0,
-            "youngs_modulus_kpa": 1000.0,
-            "poissons_ratio": 0.33,
-            "cohesion_kpa": 20.0,
-            "residual_cohesion_kpa": 4.0,
-            "softening_modulus_kpa": 50.0,
-            "softening_length_m": 0.5,
-            "viscosity_kpa_s": 0.3,
-        }
-    ],
-    "random_field": {
-        "cohesion": {
-            "material": "clay",
-            "distribution": "lognormal",
-            "coefficient_of_variation": 0.25,
-            "correlation": "markov_separable",
-            "scale_of_fluctuation_h_m": 6.0,
-            "scale_of_fluctuation_v_m": 1.0,
-            "method": "cholesky",
-        }
-    },
+    "random_field": {"cohesion": random_strength(0.25, 6.0, 1.0)},
     "time": {"end_s": 40.5},
     "quantities": {"factor_of_safety": "bishop"},
-    "output": {"directory": "unused"},
 }
 HOLDS = {"boundary.base": {"kind": "fixed"}}
 KEEPS = {"material.0.residual_cohesion_kpa": 20.0}
