@@ -88,7 +88,7 @@ def built(tables):
     return scene
 
 
-EVERY = {"deadline": None, "max_examples": 100, "suppress_health_check": list(HealthCheck)}
+EVERY = {"deadline": None, "derandomize": True, "max_examples": 100, "suppress_health_check": list(HealthCheck)}
 
 
 @settings(**EVERY)
