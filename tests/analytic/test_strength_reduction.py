@@ -137,5 +137,5 @@ def test_soil_that_cannot_fail_is_refused():
         "name": "x", "law": "elastic", "unit_weight_kn_m3": 20.0, "youngs_modulus_kpa": 1e4, "poissons_ratio": 0.33
     }  # fmt: skip
     changes = {"material.0": elastic, "quantities.factor_of_safety": "strength_reduction"}
-    with pytest.raises(rfmpm.StudyError, match=r"quantities\.factor_of_safety.*needs strength"):
+    with pytest.raises(rfmpm.StudyError, match=r"quantities\.factor_of_safety.*needs a material with strength"):
         short_slope(1.0).with_changes(changes)

@@ -65,7 +65,7 @@ def test_chart_of_indices_that_are_unknown():
 def test_chart_of_given_data_names_what_is_above_chance():
     first, noise = np.array([0.3, 0.01]), np.array([0.03, 0.03])
     ends = first[:, None] + np.array([-0.02, 0.02])
-    found = GivenData(first, ends, noise, first, 0.1, 200, 0)
+    found = GivenData(first, ends, noise, 200, 0)
     picture = given_data_chart(["cohesion", "friction of the base"], found, "run-out")
     assert picture.alt.endswith("above what chance shows: cohesion.")
 
