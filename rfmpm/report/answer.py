@@ -89,8 +89,8 @@ def basis(numbers: Numbers, study) -> str:
     if numbers.asked.is_probability and numbers.completed:
         exceed = "exceeds" if numbers.beyond == 1 else "exceed"
         sentence += f"; {numbers.beyond} of them {exceed} {numbers.asked.limit:g} {numbers.asked.unit}"
-    if numbers.has_chains:
-        sentence += "; most of all were sought near the limit"
+    if numbers.choice:
+        sentence += f"; most of all were {numbers.choice}"
     if numbers.coarser:
         sentence += f"; {words.count(numbers.coarser, SIMULATION)} on coarser cells support them"
     if study.estimator is not None and study.estimator.sampling != "random":

@@ -37,7 +37,7 @@ class Numbers:
     discretisation: Discretisation | None
     next_steps: list[str]
     is_random: bool  # whether realisations differ
-    has_chains: bool  # whether most realisations were sought near the limit, the first ones alone being a fair sample
+    choice: str  # how most realisations were chosen, the first ones alone being a fair sample; empty: not at all
     is_plain: bool  # whether they are independent and all on the study's own cells
     coarser: int  # rows on coarser cells
     held: int  # rows in the dataset, on the study's own cells
@@ -81,7 +81,7 @@ def analyse(dataset, study) -> Numbers:
     rows, answers = usable(dataset, study), Answers(dataset, study, CONFIDENCE)
     counted = independent(rows, study)
     return Numbers(
-        **_answer(planning.on_own_cells(dataset) if answers.has_chains else rows, study, answers),
+        **_answer(rows if answers.fair_size is None else planning.on_own_cells(dataset), study, answers),
         **_of_run_out(rows, study, answers),
         **_curves(rows, study, answers),
         coarser=int(np.sum(dataset["level"].values > 0)),
@@ -123,10 +123,16 @@ def _answer(rows, study, answers: Answers) -> dict:
         "discretisation": cells,
         "next_steps": next_steps(standing, study),
         "is_random": standing.is_random,
-        "has_chains": answers.has_chains,
+        "choice": _choice(answers),
         "is_plain": answers.is_plain,
         "at_back": standing.at_back,
     }
+
+
+def _choice(answers: Answers) -> str:
+    if answers.has_chains:
+        return "sought near the limit"
+    return "" if answers.fair_size is None else "chosen where the coarser ones leave the answer open"
 
 
 def _of_run_out(rows, study, answers: Answers) -> dict:

@@ -91,12 +91,12 @@ def sample(numbers: Numbers, study) -> str:
             "Intervals of kinds of failure, inundation and factors of safety are those of independent simulations; "
             "evenly spread ones scatter less, as a rule."
         )
-    if not numbers.has_chains:
+    if not numbers.choice:
         return ""
     shown = sum(numbers.statuses.values())
     return (
-        f"From here on the page shows the first {shown} simulated slopes, a fair sample; the others were sought near "
-        "the limit and count in the answer alone."
+        f"From here on the page shows the first {shown} simulated slopes, a fair sample; the others were "
+        f"{numbers.choice} and count in the answer alone."
     )
 
 

@@ -103,7 +103,9 @@ def test_a_campaign_with_a_question_ends_with_its_answer_alone(study, ensemble):
 def test_of_two_phases_the_page_shows_the_first_realisations_and_the_answer_uses_all(study, ensemble):
     phases = study.with_changes({"study.until.at_most": 96, "estimator.method": "two_phase"})
     numbers = analyse(ensemble, phases)
-    assert (numbers.held, numbers.used) == (PAIRS, 32)
+    assert (numbers.held, numbers.used, sum(numbers.statuses.values())) == (PAIRS, PAIRS, 32)
+    assert "most of all were chosen where the coarser ones leave the answer open" in answer.basis(numbers, phases)
+    assert not any("missing index" in warning for warning in answer.warnings(numbers, phases))
     assert numbers.answer.n == PAIRS
     assert "double sampling" in numbers.answer.method
     assert numbers.discretisation.n == 32
