@@ -207,7 +207,7 @@ def no_history(bench: Bench) -> Saving:
     """Perfect plasticity with the history of the softening law, and without."""
     law = bench.study.material[0].model_copy(update={"softening_modulus_kpa": 0.0, "cohesion_kpa": 10.0,
                                                      "residual_cohesion_kpa": 10.0})  # fmt: skip
-    scene = replace(bench.plain.scene, material=law)
+    scene = replace(bench.plain.scene, soils=bench.plain.scene.soils._replace(materials=(law,)))
 
     def steps(is_bare: bool):
         own = scenes.release(scene, None)._replace(averaging=None)
