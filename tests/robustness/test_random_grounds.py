@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from rfmpm.ground import body_polygon, regions_of
 from rfmpm.mpm import scene as scenes
 from rfmpm.mpm.solvers import SOLVERS
 from rfmpm.mpm.state import AT_REST, RUNNING, start
@@ -93,8 +94,13 @@ EVERY = {"deadline": None, "derandomize": True, "max_examples": 100, "suppress_h
 
 @settings(**EVERY)
 @given(grounds())
-def test_a_ground_is_built_or_refused(tables):
-    built(tables)
+def test_a_ground_is_built_with_its_area_or_refused(tables):
+    if (scene := built(tables)) is None:
+        return
+    study = load_study(tables)
+    regions = regions_of(study.geometry, study.material[0].name, study.discretisation.cell_m)
+    area = body_polygon(study.geometry, regions).area
+    assert scene.points.volume.sum() == pytest.approx(area, rel=1e-3)  # what is asked; slivers are left out
 
 
 @pytest.mark.slow
