@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from rfmpm.benchmark.frictional.cases import REPOSITORY
+from rfmpm.benchmark.papers.case import REPOSITORY
 
 NAME = "bui_2008_aluminium_bars"
 CURVE = REPOSITORY / "tests" / "papers" / "bui_2008" / "surface.csv"

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from rfmpm.benchmark.frictional import columns
-from rfmpm.benchmark.frictional.cases import Section, finding, table
+from rfmpm.benchmark.frictional.cases import Section, finding
+from rfmpm.benchmark.markdown import table
 from rfmpm.report.slope_figures import WIDTH
 from rfmpm.report.style import BLUE, GREY, ORANGE, drawing, new_figure, save
 

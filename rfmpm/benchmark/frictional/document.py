@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from rfmpm.benchmark.frictional import columns_page, pile_page, slope_page
-from rfmpm.benchmark.frictional.cases import table
+from rfmpm.benchmark.markdown import table
 
 SECTIONS = (pile_page.section, columns_page.planar, columns_page.stages, slope_page.section)
 

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rfmpm import realisation
-from rfmpm.benchmark.frictional.cases import CELL, collapse, study
+from rfmpm.benchmark.frictional.cases import CELL, collapse
+from rfmpm.benchmark.papers.case import study
 from rfmpm.mpm import scene as scenes
 from rfmpm.mpm.solvers import SOLVERS
 from rfmpm.mpm.state import RUNNING, start

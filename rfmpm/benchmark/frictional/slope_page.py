@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from rfmpm.benchmark.frictional import slope
-from rfmpm.benchmark.frictional.cases import CELL, Section, finding, table
+from rfmpm.benchmark.frictional.cases import CELL, Section, finding
 from rfmpm.benchmark.frictional.slope import COHESION, Cost, Travel, travel
+from rfmpm.benchmark.markdown import table
 from rfmpm.report.slope_figures import WIDTH
 from rfmpm.report.style import BLUE, ORANGE, VERMILION, drawing, new_figure, save
 
