@@ -141,6 +141,7 @@ def test_every_estimator_and_sampling_has_a_page():
 def test_every_law_shape_correlation_and_method_of_a_field_is_on_a_page_of_theory():
     from rfmpm.mpm.boundary import WALLS
     from rfmpm.mpm.initial_stress import INITIAL_STRESSES
+    from rfmpm.mpm.laws import LAWS
     from rfmpm.mpm.shapes import SHAPES
     from rfmpm.random_fields.correlation import CORRELATIONS
     from rfmpm.random_fields.marginals import MARGINALS
@@ -148,7 +149,7 @@ def test_every_law_shape_correlation_and_method_of_a_field_is_on_a_page_of_theor
     from rfmpm.stability.limit_equilibrium import ASSUMPTIONS
 
     theory = "\n".join(text for page, text in PAGES.items() if page.startswith("theory/"))
-    named = [*WALLS, *INITIAL_STRESSES, *SHAPES, *CORRELATIONS, *MARGINALS, *METHODS, *ASSUMPTIONS]
+    named = [*LAWS, *WALLS, *INITIAL_STRESSES, *SHAPES, *CORRELATIONS, *MARGINALS, *METHODS, *ASSUMPTIONS]
     assert [name for name in named if f"`{name}`" not in theory] == []
 
 
