@@ -19,6 +19,7 @@ exclude_patterns = ["docs/_build", ".*", "build", "dist", "results", "rfmpm*", "
 
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist"]
 myst_heading_anchors = 4
+smartquotes = False  # what stands in quotes is often a value
 suppress_warnings = ["myst.header"]  # pages of reports begin where their headings do
 
 napoleon_use_rtype = False

@@ -81,7 +81,8 @@ def _key_row(key: str, info: FieldInfo) -> str:
     meaning = info.description or "Which of the kinds"
     units = UNIT.findall(meaning)
     default = "needed" if info.is_required() else "" if info.default is None else f"`{shown(info.default)}`"
-    cells = (f"`{key}`", allowed(info.annotation, info), units[0] if units else "", default, UNIT.sub("", meaning))
+    holds = "a table, below" if tables(info.annotation) else allowed(info.annotation, info)
+    cells = (f"`{key}`", holds, units[0] if units else "", default, UNIT.sub("", meaning))
     return _row(cells)
 
 

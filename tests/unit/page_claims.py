@@ -23,7 +23,7 @@ from rfmpm.study import Study, StudyError, load_study
 
 COMMANDS = typer.main.get_command(app)
 LAUNCHERS = {"mpirun", "srun"}
-OTHERS = {"export", "sbatch", "qsub", "squeue", "scancel", "touch", "cd", "git", "cp", "kill", "ncdump"}  # of the system
+OTHERS = {"export", "sbatch", "qsub", "squeue", "scancel", "touch", "cd", "git", "cp", "kill", "ncdump"}
 WRITTEN_BY_THE_READER = "my_slope.toml"
 
 
