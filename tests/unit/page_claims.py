@@ -7,6 +7,7 @@ import shlex
 import tomllib
 from collections.abc import Iterator
 from contextlib import chdir
+from functools import cache
 from itertools import groupby
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -152,3 +153,19 @@ def wrong_names(source: str) -> Iterator[str]:
             module = modules[node.value.id]
             if not hasattr(module, node.attr):
                 yield f"{module.__name__}.{node.attr}"
+
+
+@cache
+def texts_of_the_program() -> str:
+    """Every text in the sources of the program, and every piece of one between the values put into it."""
+    sources = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "rfmpm").rglob("*.py"))]
+    nodes = (node for source in sources for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Constant))
+    return "\n".join(node.value for node in nodes if isinstance(node.value, str))
+
+
+def wrong_messages(text: str) -> Iterator[str]:
+    """Messages, first in the rows of a table of messages, that the program cannot say; numbers stand for others."""
+    for table in re.findall(r"^\| message \|.*\n\|[-|]+\n((?:\|.*\n)+)", text, re.MULTILINE):
+        for message in re.findall(r"^\| `([^`]+)`", table, re.MULTILINE):
+            if not all(piece.strip() in texts_of_the_program() for piece in re.split(r"\d+", message)):
+                yield message

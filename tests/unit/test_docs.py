@@ -9,11 +9,21 @@ import sys
 
 import pages
 import pytest
-from page_claims import COMMANDS, lines_of, study_of, wrong_command, wrong_links, wrong_names, wrong_words
+from page_claims import (
+    COMMANDS,
+    lines_of,
+    study_of,
+    wrong_command,
+    wrong_links,
+    wrong_messages,
+    wrong_names,
+    wrong_words,
+)
 from pages import ROOT, Block
 
+from rfmpm.cli.endings import STOPPED_EARLY, TOO_MANY_FAILED, WRONG_STUDY
 from rfmpm.study import Study, StudyError, load_study
-from rfmpm.variables import VARIABLES
+from rfmpm.variables import STATUS, VARIABLES
 
 NAMES = {str(path.relative_to(ROOT)): pages.text_of(path) for path in pages.pages()}
 BLOCKS = [block for name, text in NAMES.items() for block in pages.blocks(text, name)]
@@ -36,6 +46,11 @@ def test_links_lead_somewhere(page):
 @pytest.mark.parametrize("page", NAMES)
 def test_words_of_code_are_commands_and_options_that_exist(page):
     assert list(wrong_words(NAMES[page])) == []
+
+
+@pytest.mark.parametrize("page", [page for page, text in NAMES.items() if "\n| message |" in text])
+def test_messages_are_those_of_the_program(page):
+    assert list(wrong_messages(NAMES[page])) == []
 
 
 def test_blocks_are_in_languages_that_are_read_here():
@@ -83,6 +98,12 @@ def test_what_the_program_tells_has_every_key_command_and_variable():
     assert not [name for name in VARIABLES if f"| `{name}` |" not in NAMES["docs/reference/results.md"]]
 
 
+def test_every_status_and_exit_code_is_explained():
+    page = NAMES["docs/guide/12_troubleshooting.md"]
+    assert not [name for name in STATUS if f"\n| `{name}` |" not in page]
+    assert not [code for code in (0, WRONG_STUDY, TOO_MANY_FAILED, STOPPED_EARLY) if f"\n| {code} |" not in page]
+
+
 # The readers themselves: each finds what is wrong.
 
 
@@ -117,6 +138,11 @@ def test_reader_of_words():
         "rfmpm run DIR --nothing",
         "rfmpm runs",
     ]
+
+
+def test_reader_of_messages():
+    right, wrong = "the launcher started 8 ranks, but the MPI library sees 1", "the launcher found 8 ranks"
+    assert list(wrong_messages(f"| message | do |\n|---|---|\n| `{right}` | |\n| `{wrong}` | |\n")) == [wrong]
 
 
 @pytest.mark.parametrize(
