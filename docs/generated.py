@@ -1,7 +1,8 @@
-"""The parts of the pages that the program itself tells: keys of a study, commands, variables of a result."""
+"""The parts of the pages that program and reports tell themselves: keys, commands, variables, pictures of papers."""
 
 import re
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any, get_args, get_origin
 
 import typer
@@ -37,24 +38,19 @@ def _told(name: str) -> str | None:
 
 def study_keys() -> Iterator[str]:
     """Every table of a study file, with its keys."""
+    told: dict[tuple, str] = {}
     for name, info in Study.model_fields.items():
-        annotation = bare(info.annotation)
-        kind = get_args(annotation)
-        if name == "random_field":
-            written, meaning = f"[{name}.VARIABLE]", f"VARIABLE is {allowed(kind[0], None)}. {info.description}."
-            annotation = kind[1]
-        else:
-            is_list = get_origin(annotation) is tuple
-            written, meaning = f"[[{name}]]" if is_list else f"[{name}]", _sentence(info.description)
-            annotation = kind[0] if is_list else annotation
-        yield from _chapter(written, annotation, meaning)
+        yield from _chapter(*_table_at(name, info), told, 2)
 
 
-def _chapter(written: str, annotation: Any, meaning: str, depth: int = 2) -> Iterator[str]:
-    """One table of a study file under a heading, in all of its kinds, and those within it."""
-    yield from ("", f"{'#' * depth} `{written}`", "", meaning)
-    members = tables(annotation)
-    within: dict[str, tuple[Any, str]] = {}
+def _chapter(written: str, annotation: Any, meaning: str, told: dict[tuple, str], depth: int) -> Iterator[str]:
+    """One table of a study file under a heading, in all of its kinds, and those within it; no table is told twice."""
+    members = tuple(tables(annotation))
+    like = told.setdefault(members, written)
+    yield from ("", f"{'#' * depth} `{written}`", "", meaning if like == written else f"{meaning} As `{like}`.")
+    if like != written:
+        return
+    within: dict[str, tuple[str, Any, str]] = {}
     for member in members:
         if len(members) > 1:
             name = tag_name(members)
@@ -62,13 +58,21 @@ def _chapter(written: str, annotation: Any, meaning: str, depth: int = 2) -> Ite
         yield from ("", _own_words(member), "", "| key | holds | unit | default | meaning |", "|---|---|---|---|---|")
         for key, info in member.model_fields.items():
             yield _key_row(key, info)
-            within |= _tables_within(written, key, info)
-    for inner, (table, words) in within.items():
-        like = next(name for name, (other, _) in within.items() if other == table)
-        if like == inner:
-            yield from _chapter(inner, table, words, depth + 1)
-        else:
-            yield from ("", f"{'#' * (depth + 1)} `{inner}`", "", f"{words} As `{like}`.")
+            if (inner := _table_at(f"{written.strip('[]')}.{key}", info)) is not None:
+                within[inner[0]] = inner
+    for inner in within.values():
+        yield from _chapter(*inner, told, min(depth + 1, 4))
+
+
+def _table_at(path: str, info: FieldInfo) -> tuple[str, Any, str] | None:
+    """How the table under a key is written, what it may be, and what it means; None where no table is."""
+    annotation, meaning = bare(info.annotation), _sentence(info.description)
+    arguments, origin = get_args(annotation), get_origin(annotation)
+    if origin is dict:
+        return f"[{path}.VARIABLE]", arguments[1], f"{meaning} VARIABLE is {allowed(arguments[0], None)}."
+    if origin is tuple:
+        return (f"[[{path}]]", arguments[0], meaning) if tables(arguments[0]) else None
+    return (f"[{path}]", annotation, meaning) if tables(annotation) else None
 
 
 def _own_words(member: type[BaseModel]) -> str:
@@ -84,14 +88,6 @@ def _key_row(key: str, info: FieldInfo) -> str:
     holds = "a table, below" if tables(info.annotation) else allowed(info.annotation, info)
     cells = (f"`{key}`", holds, units[0] if units else "", default, UNIT.sub("", meaning))
     return _row(cells)
-
-
-def _tables_within(written: str, key: str, info: FieldInfo) -> dict[str, tuple[Any, str]]:
-    annotation = bare(info.annotation)
-    path = f"{written.strip('[]')}.{key}"
-    if get_origin(annotation) is tuple and tables(get_args(annotation)[0]):
-        return {f"[[{path}]]": (get_args(annotation)[0], _sentence(info.description))}
-    return {f"[{path}]": (annotation, _sentence(info.description))} if tables(annotation) else {}
 
 
 def commands() -> Iterator[str]:
@@ -116,6 +112,17 @@ def result_variables() -> Iterator[str]:
     yield from _variable_table([*COORDINATES.values(), *VARIABLES.values(), *PROVENANCE.values()])
     yield from ("", "## `simulation.nc`")
     yield from _variable_table([*POINT_VARIABLES.values(), *HISTORY_VARIABLES.values(), *MOTION_VARIABLES.values()])
+
+
+def papers() -> Iterator[str]:
+    """The first picture of every paper that was run again, with what it shows and the command that makes it."""
+    for path in sorted((Path(__file__).parents[1] / "reports" / "papers").glob("*.md")):
+        text = path.read_text(encoding="utf-8")
+        title, picture = re.search(r"^# (.+)$", text, re.MULTILINE), re.search(r"!\[(.*?)\]\((.+?)\)", text)
+        made = re.search(r"`(python workflows/[^`]+)`", text)
+        if title and picture and made:
+            yield from ("", f"![{picture[1]}](../reports/papers/{picture[2]})", "")
+            yield f"{_sentence(title[1])} {picture[1]} `{made[1]}`, [report](../reports/papers/{path.name})"
 
 
 def _variable_table(variables: list[Variable]) -> Iterator[str]:
@@ -144,4 +151,5 @@ MARKS: dict[str, Callable[[], Iterator[str]]] = {
     "study keys": study_keys,
     "commands": commands,
     "result variables": result_variables,
+    "papers": papers,
 }
