@@ -10,6 +10,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from rfmpm.cli import app
+from rfmpm.report.modes import MEANINGS, NAMES
 from rfmpm.study import Study
 from rfmpm.study.schema import allowed, bare, shown, tables, tag_name, tag_of
 from rfmpm.variables import (
@@ -114,6 +115,12 @@ def result_variables() -> Iterator[str]:
     yield from _variable_table([*POINT_VARIABLES.values(), *HISTORY_VARIABLES.values(), *MOTION_VARIABLES.values()])
 
 
+def kinds_of_failure() -> Iterator[str]:
+    """The kinds of failure that a report tells apart."""
+    yield from ("| kind | is |", "|---|---|")
+    yield from (_row((name.lower(), MEANINGS[key])) for key, name in NAMES.items())
+
+
 def papers() -> Iterator[str]:
     """The first picture of every paper that was run again, with what it shows and the command that makes it."""
     for path in sorted((Path(__file__).parents[1] / "reports" / "papers").glob("*.md")):
@@ -151,5 +158,6 @@ MARKS: dict[str, Callable[[], Iterator[str]]] = {
     "study keys": study_keys,
     "commands": commands,
     "result variables": result_variables,
+    "kinds of failure": kinds_of_failure,
     "papers": papers,
 }
