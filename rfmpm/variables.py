@@ -46,7 +46,7 @@ def _is_uncertain(study) -> bool:
 
 
 def _varies(name: str) -> Callable[[Any], bool]:
-    return lambda study: name in study.random_field
+    return lambda study: any(field.variable == name for field in study.fields)
 
 
 @dataclass(frozen=True)

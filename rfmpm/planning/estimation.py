@@ -41,7 +41,7 @@ def estimator_of(study) -> Estimator:
     if table.method == "monte_carlo":
         size = table.replicate_size
         if table.sampling == "saltelli":  # base points are the independent ones
-            size = saltelli_size(len(study.uncertain), bool(study.random_field))
+            size = saltelli_size(len(study.uncertain), bool(study.fields))
         return Replicated(question, size, number)
     if table.method == "stratified":
         return Stratified(question, FieldFeatures(study), table.pilot_size)
