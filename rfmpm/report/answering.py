@@ -41,9 +41,9 @@ class Answers:
         return design is None or (design.method == "monte_carlo" and design.sampling == "random")
 
     @property
-    def has_chains(self) -> bool:
-        """Whether realisations follow from others, so that the first ones alone are a fair sample."""
-        return planning.has_chains(self.study)
+    def approaches_limit(self) -> bool:
+        """Whether realisations follow from others, nearer to the limit: the first ones alone are a fair sample."""
+        return planning.approaches_limit(self.study)
 
     @property
     def fair_size(self) -> int | None:
@@ -86,7 +86,7 @@ class Answers:
         several levels, whose interval counts them both ways here too.
         """
         rows = self.rows
-        if self.has_chains:  # what followed from a failed one would have been another
+        if self.approaches_limit:  # what followed from a failed one would have been another
             return self.estimate(rows)
         failed = rows.is_failed & (rows.level == 0)
         rows = replace(rows, is_censored=rows.is_censored & (rows.level > 0))

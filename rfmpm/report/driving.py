@@ -7,8 +7,8 @@ import numpy as np
 
 from rfmpm import planning
 from rfmpm.estimators.sensitivity import FEWEST, arrange, given_data_indices, sobol_indices
+from rfmpm.planning.questions import NOUNS
 from rfmpm.report.answering import Answers
-from rfmpm.report.asked import NOUNS
 from rfmpm.report.members import independent, usable
 from rfmpm.report.style import Picture
 

@@ -130,7 +130,7 @@ def _answer(rows, study, answers: Answers) -> dict:
 
 
 def _choice(answers: Answers) -> str:
-    if answers.has_chains:
+    if answers.approaches_limit:
         return "sought near the limit"
     return "" if answers.fair_size is None else "chosen where the coarser ones leave the answer open"
 
