@@ -81,8 +81,9 @@ def residual_above_peak(prepared: Prepared, fields: dict[str, np.ndarray]) -> fl
     if "residual_cohesion" not in fields:
         return None
     peak = fields.get("cohesion", own_cohesion(prepared.scene))
-    own = prepared.fields["residual_cohesion"].where
-    return float(np.mean((fields["residual_cohesion"] > peak)[own]))
+    above = fields["residual_cohesion"] > peak
+    own = [above[one.where] for one in prepared.fields.values() if one.name == "residual_cohesion"]
+    return float(np.mean(np.concatenate(own)))
 
 
 def own_cohesion(scene: scenes.Scene) -> np.ndarray:

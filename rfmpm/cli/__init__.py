@@ -96,7 +96,7 @@ def simulate(
     from rfmpm.study import load_study
 
     settings = load_study(study)
-    if xi is not None and (homogeneous or not (settings.random_field or settings.uncertain)):
+    if xi is not None and (homogeneous or not (settings.fields or settings.uncertain)):
         end("--xi: there is nothing random to make of it; leave the option out", WRONG_STUDY)
     name = "simulation_homogeneous" if homogeneous else f"simulation_{index if xi is None else xi.stem}"
     folder = _writable(out or Path(settings.output.directory) / name)
@@ -145,7 +145,7 @@ def field(
     from rfmpm.study import StudyError, load_study
 
     settings = load_study(study)
-    if not settings.random_field:
+    if not settings.fields:
         raise StudyError(["random_field: this study has none; its strength is the same everywhere"], str(study))
     folder = _writable(out or Path(settings.output.directory) / f"field_{index}")
     from rfmpm import report

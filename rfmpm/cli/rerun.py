@@ -53,7 +53,7 @@ def _rows_before(directory: Path, study: Any) -> Any:
     """The rows from which a realisation may follow; None where each stands by itself."""
     from rfmpm import ensemble, planning
 
-    if not planning.has_chains(study):
+    if not planning.approaches_limit(study):
         return None
     try:
         return ensemble.rows_on_record(directory, study)

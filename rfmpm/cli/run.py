@@ -112,7 +112,7 @@ def _campaign(settings: Any, folder: Path, workers: int | None, options: dict[st
             end(f"--indices {part[0]}:{part[1]}: {planning.NOT_DIVISIBLE}", WRONG_STUDY)
         if part[1] > settings.study.realisations:
             end(f"--indices {part[0]}:{part[1]}: the study has {settings.study.realisations}", WRONG_STUDY)
-    if options["repeat_failed"] and planning.has_chains(settings):
+    if options["repeat_failed"] and planning.approaches_limit(settings):
         end(f"--repeat-failed: {planning.NOT_AGAIN}", WRONG_STUDY)
     if workers is not None and (launched_ranks() or 1) > 1:
         end("--workers: the ranks of mpirun are the workers; leave the option out", WRONG_STUDY)

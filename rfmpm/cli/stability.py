@@ -33,7 +33,7 @@ def stability(
 
     if method not in METHODS:
         end(f"--method {method}: must be one of {', '.join(METHODS)}", WRONG_STUDY)
-    is_random = bool(settings.random_field or settings.uncertain) and not homogeneous
+    is_random = bool(settings.fields or settings.uncertain) and not homogeneous
     name = f"stability_{index}" if is_random else "stability"
     folder = out or Path(settings.output.directory) / name
     folder.mkdir(parents=True, exist_ok=True)

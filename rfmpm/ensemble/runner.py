@@ -96,7 +96,7 @@ def run(
 
 def _course(study, indices: tuple[int, int] | None, repeat_failed: bool) -> Callable[[], FixedCourse | OpenCourse]:
     """What makes the course of a study, for the one process that follows it."""
-    if repeat_failed and planning.has_chains(study):
+    if repeat_failed and planning.approaches_limit(study):
         raise ValueError(f"repeat_failed: {planning.NOT_AGAIN}")
     if indices is not None and not planning.is_divisible(study):
         raise ValueError(f"indices: {planning.NOT_DIVISIBLE}")

@@ -1,4 +1,8 @@
-"""Discretisation error of an expectation from realisations run on several cell sizes."""
+"""Discretisation error of an expectation or a quantile from realisations run on several cell sizes.
+
+Where the coarser runs decided which realisations were repeated on the study's own cells, these are no fair sample: each
+stratum then counts by its share of the coarser runs.
+"""
 
 import math
 from collections.abc import Sequence
@@ -8,10 +12,12 @@ import numpy as np
 from scipy.special import ndtri
 
 from rfmpm.estimators.contributions import Contributions
-from rfmpm.estimators.question import Functions
+from rfmpm.estimators.phases import Parts, stratified
+from rfmpm.estimators.question import Functions, Value
 from rfmpm.estimators.rows import Rows
 
 ASSUMED_ORDER = 1.0
+RESAMPLES = 200  # of the pairs, for the scatter of a quantile
 ORDERS = (0.5, 3.0)  # an observed order outside says that the cells are not yet in the range where one holds
 
 
@@ -42,8 +48,61 @@ class Discretisation:
     note: str
 
 
+@dataclass(frozen=True)
+class Pairs:
+    """Realisations that completed on levels 0, 1, ...
+
+    Attributes:
+        outcome: a function of the quantity on each level, shape (n, levels).
+        stratum: of each, shape (n,) [-].
+        held: realisations from whose coarser runs those of each stratum were chosen, shape (strata,) [-]; None where
+            they are a fair sample, of one stratum.
+    """
+
+    outcome: np.ndarray
+    stratum: np.ndarray
+    held: np.ndarray | None
+
+    @property
+    def taken(self) -> np.ndarray:
+        """Realisations of each stratum, shape (strata,) [-]."""
+        return np.bincount(self.stratum)
+
+    @property
+    def shares(self) -> np.ndarray:
+        """Share of each stratum in all realisations, shape (strata,) [-]."""
+        return np.ones(1) if self.held is None else self.held / self.held.sum()
+
+    def mean(self, values: np.ndarray) -> Contributions:
+        """Contributions to the mean of values of the realisations, shape (n, 1)."""
+        if self.held is None:
+            n = len(values)
+            return Contributions(values / n, np.zeros(n, int), np.zeros(1))
+        first = np.cumsum(self.held) - self.held  # the realisations stratum by stratum, those with values first
+        places = np.concatenate([start + np.arange(n) for start, n in zip(first, self.taken, strict=True)])
+        rest, chosen = np.zeros((int(self.held.sum()), 1)), np.zeros(int(self.held.sum()), bool)
+        rest[places], chosen[places] = values[np.argsort(self.stratum, kind="stable")], True
+        return stratified(Parts(rest, np.zeros(rest.shape)), chosen, np.repeat(np.arange(self.held.size), self.held))
+
+    def resampled(self, generator: np.random.Generator) -> tuple[np.ndarray, np.ndarray | None]:
+        """Realisations drawn again within their strata, and the weight of each; shape (RESAMPLES, n) both."""
+        n = len(self.outcome)
+        if self.held is None:
+            return generator.integers(n, size=(RESAMPLES, n)), None
+        drawn = np.empty((RESAMPLES, n), int)
+        for stratum, count in enumerate(self.taken):
+            here = np.flatnonzero(self.stratum == stratum)
+            drawn[:, here] = here[generator.integers(count, size=(RESAMPLES, count))]
+        sizes = generator.multinomial(self.held.sum(), self.shares, size=RESAMPLES)
+        return drawn, (sizes / self.taken)[:, self.stratum]
+
+
 def discretisation(
-    rows: Rows, functions: Functions, cells_m: Sequence[float], confidence: float = 0.95
+    rows: Rows,
+    functions: Functions,
+    cells_m: Sequence[float],
+    confidence: float = 0.95,
+    stratum: np.ndarray | None = None,
 ) -> Discretisation | None:
     """Estimate the discretisation error of one expectation from realisations that were simulated on several levels.
 
@@ -55,32 +114,74 @@ def discretisation(
         functions: one function: Value(), or Exceedances of one limit.
         cells_m: cell size of each level, finest first [m].
         confidence: level of the interval [-].
+        stratum: of every realisation on level 1, shape (n,) [-], where level 0 has the first ones of each stratum; None
+            where what is on all levels is a fair sample.
 
     Returns:
         Discretisation; None with fewer than two levels that have two completed realisations in common.
 
-    Source: Roache (1998), Verification and Validation in Computational Science and Engineering, section 5.
+    Source: Roache (1998), Verification and Validation in Computational Science and Engineering, section 5; Cochran
+    (1977), Sampling Techniques, section 12.2.
     """
-    outcome = _common(rows, functions, len(cells_m))
-    if outcome.shape[1] < 2:
+    pairs = _pairs(rows, functions, len(cells_m), stratum)
+    if pairs.outcome.shape[1] < 2:
         return None
-    n = len(outcome)
-    cells = tuple(float(h) for h in cells_m[: outcome.shape[1]])
-    steps = np.diff(outcome, axis=1)  # coarser less finer
+    cells = tuple(float(h) for h in cells_m[: pairs.outcome.shape[1]])
+    steps = np.diff(pairs.outcome, axis=1)  # coarser less finer
     order, is_observed, note = _order(steps, cells)
     factor = 1.0 / ((cells[1] / cells[0]) ** order - 1.0)
-    unit = factor * steps[:, :1] / n
-    found = Contributions(unit, np.zeros(n, int), np.zeros(1)).expectation(confidence, is_probability=False)
+    found = pairs.mean(factor * steps[:, :1]).expectation(confidence, is_probability=False)
     value, error, lower, upper = (float(column[0]) for column in found)
     if functions.is_probability:  # as if one more indicator differed: that none of n does leaves room for some
-        unseen = factor / (n + 2.0)
+        unseen = factor * float(np.max(pairs.shares / (pairs.taken + 2.0)))
         half = math.hypot(upper - value, float(ndtri(0.5 + confidence / 2.0)) * unseen)
         error, lower, upper = math.hypot(error, unseen), value - half, value + half
-    return Discretisation(value, error, lower, upper, order, is_observed, cells, n, note)
+    return Discretisation(value, error, lower, upper, order, is_observed, cells, len(steps), note)
 
 
-def _common(rows: Rows, functions: Functions, levels: int) -> np.ndarray:
-    """Outcomes of the realisations that completed on level 0, 1, ..., as many levels as have two of them in common."""
+def discretisation_of_quantile(
+    rows: Rows,
+    probability: float,
+    cells_m: Sequence[float],
+    confidence: float = 0.95,
+    stratum: np.ndarray | None = None,
+) -> Discretisation | None:
+    """The same of the quantile of a probability, from the two finest levels, resampled; first order is assumed.
+
+    Args:
+        rows: of the campaign.
+        probability: of the quantile [-].
+        cells_m: as for `discretisation`.
+        confidence: as for `discretisation`.
+        stratum: as for `discretisation`.
+
+    Returns:
+        Discretisation; None with fewer than two realisations in common.
+    """
+    pairs = _pairs(rows, Value(), 2, stratum)
+    if pairs.outcome.shape[1] < 2:
+        return None
+    values, ratio = pairs.outcome.T, cells_m[1] / cells_m[0]
+    drawn, weights = pairs.resampled(np.random.default_rng(0))
+    own = None if weights is None else (pairs.shares / pairs.taken)[pairs.stratum]
+    error = float(np.diff(_quantile(values, probability, own))[0]) / (ratio - 1.0)
+    scatter = float(np.diff(_quantile(values[:, drawn], probability, weights), axis=0).std(ddof=1)) / (ratio - 1.0)
+    half = float(ndtri(0.5 + confidence / 2.0)) * scatter
+    note = f"order {ASSUMED_ORDER:g} assumed; scatter by resampling"
+    cells = tuple(float(h) for h in cells_m[:2])
+    return Discretisation(error, scatter, error - half, error + half, ASSUMED_ORDER, False, cells, len(drawn[0]), note)
+
+
+def _quantile(values: np.ndarray, probability: float, weights: np.ndarray | None) -> np.ndarray:
+    """Quantile along the last axis."""
+    if weights is None:
+        return np.quantile(values, probability, axis=-1)
+    weights = np.broadcast_to(weights, values.shape)
+    return np.quantile(values, probability, axis=-1, weights=weights, method="inverted_cdf")
+
+
+def _pairs(rows: Rows, functions: Functions, levels: int, stratum: np.ndarray | None) -> Pairs:
+    """The realisations that completed on level 0, 1, ..., as many levels as have two of them in common."""
     per_level = [rows.where((rows.level == level) & ~rows.is_failed) for level in range(levels)]
     common, kept = per_level[0].index, 1
     for other in per_level[1:]:
@@ -89,7 +190,11 @@ def _common(rows: Rows, functions: Functions, levels: int) -> np.ndarray:
             break
         common, kept = both, kept + 1
     chosen = [level.where(np.isin(level.index, common)) for level in per_level[:kept]]
-    return np.hstack([functions(level) for level in chosen])
+    outcome = np.hstack([functions(level) for level in chosen])
+    if stratum is None or kept < 2:
+        return Pairs(outcome, np.zeros(len(outcome), int), None)
+    there, of = np.unique(stratum[common], return_inverse=True)  # a stratum without pairs is left out
+    return Pairs(outcome, of, np.bincount(stratum)[there])
 
 
 def _order(steps: np.ndarray, cells: Sequence[float]) -> tuple[float, bool, str]:

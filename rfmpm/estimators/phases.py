@@ -11,7 +11,7 @@ cells failed counts as not chosen; a coarse run may be any function of the field
 Source: Neyman (1938), J. Am. Stat. Assoc. 33, 101-116; Cochran (1977), Sampling Techniques, sections 12.2 and 12.6.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -133,21 +133,35 @@ def contributions(phases: Phases) -> Contributions:
 
     A stratum of which nothing completed on the own cells counts with its predictions.
     """
-    n, k = phases.coarse_outcome.shape
     if not phases.chosen.any():
+        k = phases.coarse_outcome.shape[1]
         return Contributions(np.zeros((0, k)), np.zeros(0, int), np.zeros(k))
-    found, (sizes, taken) = parts(phases), phases.counts()
-    of, chosen = phases.stratum, phases.chosen
-    centre = _means(found.rest[chosen], of[chosen], taken, np.zeros(k))
+    found = stratified(parts(phases), phases.chosen, phases.stratum)
+    return replace(found, counts=_counts(phases)) if phases.is_probability else found
+
+
+def stratified(found: Parts, chosen: np.ndarray, stratum: np.ndarray) -> Contributions:
+    """Return what every index adds to sums over strata of W mean(rest), plus the mean of what is predicted.
+
+    Args:
+        found: rest and prediction of n indices, k functions.
+        chosen: whether the rest of an index is known, shape (n,).
+        stratum: of each index, from 0 on, shape (n,).
+
+    Returns:
+        Contributions: their scatter is that of the rest within the strata and that of the shares W.
+    """
+    n, k = found.rest.shape
+    strata = int(stratum.max()) + 1
+    sizes, taken = (np.bincount(part, minlength=strata) for part in (stratum, stratum[chosen]))
+    centre = _means(found.rest[chosen], stratum[chosen], taken, np.zeros(k))
     # Sums over a stratum of deviations from its mean are 0: their factors matter to the variance alone.
-    factor = (sizes / np.maximum(taken, 1) * np.sqrt(taken / np.maximum(taken - 1.0, 1.0)))[of, None]
-    deviation = np.where(chosen[:, None], factor * (found.rest - centre[of]), 0.0)
-    unit = (found.predicted + centre[of] + deviation) / n
+    factor = (sizes / np.maximum(taken, 1) * np.sqrt(taken / np.maximum(taken - 1.0, 1.0)))[stratum, None]
+    deviation = np.where(chosen[:, None], factor * (found.rest - centre[stratum]), 0.0)
+    unit = (found.predicted + centre[stratum] + deviation) / n
     square = np.zeros((taken.size, k))
-    np.add.at(square, of, (deviation / n) ** 2)
-    freedom = _freedom(unit, square, taken)
-    counts = _counts(phases) if phases.is_probability else ()
-    return Contributions(unit, np.zeros(n, int), np.zeros(k), counts, freedom)
+    np.add.at(square, stratum, (deviation / n) ** 2)
+    return Contributions(unit, np.zeros(n, int), np.zeros(k), freedom=_freedom(unit, square, taken))
 
 
 def _freedom(unit: np.ndarray, square: np.ndarray, taken: np.ndarray) -> np.ndarray:

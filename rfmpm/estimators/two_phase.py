@@ -132,12 +132,12 @@ class TwoPhase(Staged):
 
     def _chosen(self, rows: Rows, stage: Stage) -> np.ndarray:
         """Indices on the own cells with those that the strata get beside the present ones."""
-        of = self._strata(rows)
+        of = self.strata(rows)
         numbers = quotas(np.bincount(of[stage.own], minlength=of.max() + 1), np.bincount(of), stage.wanted)
         return np.sort(np.concatenate([np.flatnonzero(of == h)[:n] for h, n in enumerate(numbers)]))
 
-    def _strata(self, rows: Rows) -> np.ndarray:
-        """Stratum of each coarse run, by edges between the first ones, shape (n,)."""
+    def strata(self, rows: Rows) -> np.ndarray:
+        """Return the stratum of each coarse run, by edges between the first ones, shape (n,)."""
         value = _with_failed_above(rows.on_level(1))
         found = np.searchsorted(natural_breaks(value[:FIRST_COARSE]), value)
         return np.unique(found, return_inverse=True)[1]
@@ -153,7 +153,7 @@ class TwoPhase(Staged):
             coarse_outcome=outcome[rows.level == 1],
             quantity=quantity,
             coarse_quantity=_with_failed_above(coarse),
-            stratum=self._strata(rows),
+            stratum=self.strata(rows),
             is_probability=functions.is_probability,
             limits=np.atleast_1d(functions.limits) if isinstance(functions, Exceedances) else None,
             normals=None if self.components is None else np.asarray(self.components(range(n)), float),
@@ -165,7 +165,7 @@ class TwoPhase(Staged):
         rows = rows.where((rows.level < 2) & (rows.index < n))
         if not np.any(rows.level == 0):
             return rows.where(rows.level < 0)
-        of, held = self._strata(rows), np.isin(np.arange(n), rows.index[rows.level == 0])
+        of, held = self.strata(rows), np.isin(np.arange(n), rows.index[rows.level == 0])
         fair = np.zeros(n, bool)
         for stratum in np.unique(of):
             here = np.flatnonzero(of == stratum)

@@ -104,10 +104,8 @@ class Soils(NamedTuple):
 
 def soils_of(study, counts: tuple[int, ...]) -> Soils:
     """The soils of a study whose materials have so many points."""
-    fields = study.random_field.items()
-    varying = (
-        frozenset(name for name, field in fields if field.material == material.name) for material in study.material
-    )
+    numbers = range(len(study.material))
+    varying = (frozenset(field.variable for field in study.fields if number in field.materials) for number in numbers)
     return Soils(study.material, counts, tuple(varying))
 
 

@@ -33,7 +33,7 @@ def directions_of(study, prepared, store: Path | None = None) -> "Directions":
 
     components = None
     try:
-        if study.random_field:
+        if study.fields:
             components = principal_components(
                 prepared.properties, study.estimator.principal_components, store
             ).directions

@@ -41,11 +41,11 @@ def estimator_of(study) -> Estimator:
     if table.method == "monte_carlo":
         size = table.replicate_size
         if table.sampling == "saltelli":  # base points are the independent ones
-            size = saltelli_size(len(study.uncertain), bool(study.random_field))
+            size = saltelli_size(len(study.uncertain), bool(study.fields))
         return Replicated(question, size, number)
     if table.method == "stratified":
         return Stratified(question, FieldFeatures(study), table.pilot_size)
-    if has_chains(study):
+    if approaches_limit(study):
         return SubsetSimulation(question, table.level_size, table.level_probability)
     levels = len(table.coarser_cells_m or ())
     if table.method == "multilevel":
@@ -72,10 +72,10 @@ def answer(study, rows: Rows) -> Estimate:
 def is_random(study) -> bool:
     """Whether the random vector of a realisation follows from seed and index alone, by its stream."""
     table = study.estimator
-    return table is None or (table.sampling == "random" and not has_chains(study))
+    return table is None or (table.sampling == "random" and not approaches_limit(study))
 
 
-def has_chains(study) -> bool:
+def approaches_limit(study) -> bool:
     """Whether realisations follow from others before them, nearer to the limit in question."""
     return study.estimator is not None and study.estimator.method in TOWARDS_LIMIT
 
@@ -105,7 +105,7 @@ def sampler_of(study, prepared, store: Path | None = None) -> "Sampler":
     table, seed, count = study.estimator, study.study.seed, prepared.n_variables
     if table.method == "stratified":
         return StratifiedVectors(directions_of(study, prepared, store), question_of(study), table.pilot_size)
-    if has_chains(study):
+    if approaches_limit(study):
         return MarkovChains(seed, count, estimator_of(study))
     scalars = len(prepared.uncertain)
     if table.sampling == "saltelli":

@@ -7,6 +7,14 @@ from rfmpm.estimators.monte_carlo import Estimate
 from rfmpm.estimators.question import Question
 from rfmpm.variables import VARIABLES
 
+NOUNS = {
+    "run_out": "run-out",
+    "retrogression_distance": "retrogression distance",
+    "influence_distance": "influence distance",
+    "failure_volume": "failure volume",
+    "initial_failure_volume": "volume of the first slide",
+}
+
 
 def question_of(study) -> Question:
     """What a study asks; with a fixed number of realisations, P(run-out > quantities.run_out_limit_m).
@@ -35,7 +43,7 @@ def question_of(study) -> Question:
 
 def in_words(question: Question) -> str:
     """Say a question in words: "P(run-out > 5 m) to within 0.05"."""
-    name, unit = _name(question.quantity), _unit(question.quantity)
+    name, unit = NOUNS[question.quantity], unit_of(question.quantity)
     if question.kind == "exceedance":
         words, unit = f"P({name} > {question.limit:g} {unit})", ""
     elif question.kind == "quantile":
@@ -62,7 +70,7 @@ def answer_lines(study, found: Estimate) -> list[str]:
     question = question_of(study)
     plain_question = replace(question, half_width=None, relative_half_width=None)
     interval = f"{100.0 * found.confidence:.0f} % interval {found.lower:.4g} to {found.upper:.4g}"
-    unit = "" if question.kind == "exceedance" else f" {_unit(question.quantity)}"
+    unit = "" if question.kind == "exceedance" else f" {unit_of(question.quantity)}"
     value = "unknown" if isnan(found.value) else f"= {found.value:.4g}{unit}"
     basis = f"{found.n} realisations on the study's own cells"
     lines = [f"{in_words(plain_question)} {value}, {interval}{unit} ({found.method}; {basis})"]
@@ -80,10 +88,7 @@ def _with_sizes(note: str, study) -> str:
     return note
 
 
-def _name(quantity: str) -> str:
-    return {"run_out": "run-out"}.get(quantity, quantity.replace("_", " "))
-
-
-def _unit(quantity: str) -> str:
+def unit_of(quantity: str) -> str:
+    """Unit of a quantity as one writes it: "m", "m3/m"."""
     unit = VARIABLES[quantity].unit
     return {"m3 m-1": "m3/m"}.get(unit, unit)

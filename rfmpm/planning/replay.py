@@ -19,7 +19,7 @@ class Replay:
 
     Args:
         study: of the campaign.
-        rows: of the campaign; needed where realisations follow from others (`has_chains`), else None will do.
+        rows: of the campaign; needed where realisations follow from others (`approaches_limit`), else None will do.
         level: on whose cells; 0 for the study's own.
     """
 

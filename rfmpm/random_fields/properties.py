@@ -7,7 +7,7 @@ The vector `xi` of a realisation holds the parts of the properties in the order 
 those of its soils, from above all layers down; the part of a soil is what its method takes.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -41,13 +41,12 @@ class Site(NamedTuple):
         """Middles of the points' squares, shape (n, 2) [m]; where the surface cuts a square, its point is elsewhere."""
         return (np.floor(self.points / self.square + 1e-9) + 0.5) * self.square
 
-    def of_material(self, number: int) -> "Site":
-        """Where fields of one material are needed."""
+    def of_materials(self, numbers: Sequence[int]) -> "Site":
+        """Where a field of some of the materials is needed."""
         if len(self.counts) < 2:
             return self
-        return self._replace(
-            points=self.points[slice(*_span(self.counts, number))], counts=self.counts[number : number + 1]
-        )
+        counts = tuple(self.counts[number] for number in numbers)
+        return self._replace(points=self.points[_places(self.counts, numbers)], counts=counts)
 
 
 @dataclass(frozen=True)
@@ -81,7 +80,8 @@ class Property:
         taken: which of them each material point takes, shape (n, k); None where the material points carry it.
         elsewhere: values at the points of all materials in SI units, its own without variation, shape (n,); NaN where a
             law has no such property. None where there is one material.
-        span: first point of its own material and one after the last; None where there is one material.
+        places: the points of its own materials among those of all; None where there is one material.
+        ratio: mean of the material of each of these points over that of the first, shape (m,); None: one material.
     """
 
     name: str
@@ -89,12 +89,13 @@ class Property:
     count: int
     taken: np.ndarray | None
     elsewhere: np.ndarray | None = None
-    span: tuple[int, int] | None = None
+    places: slice | np.ndarray | None = None
+    ratio: np.ndarray | None = None
 
     @property
-    def where(self) -> slice:
-        """The points of its own material among those of all."""
-        return slice(None) if self.span is None else slice(*self.span)
+    def where(self) -> slice | np.ndarray:
+        """The points of its own materials among those of all."""
+        return slice(None) if self.places is None else self.places
 
     @property
     def n_variables(self) -> int:
@@ -104,7 +105,10 @@ class Property:
 
 @dataclass(frozen=True)
 class Properties:
-    """All random properties of a study, by name, and what mixes their standard-normal fields; None: independent."""
+    """All random properties of a study, by the names of `Study.fields`.
+
+    `mixing` is what makes correlated ones of their standard-normal fields; None: they are independent.
+    """
 
     entries: dict[str, Property]
     mixing: np.ndarray | None
@@ -119,7 +123,7 @@ def prepare(study: Any, site: Site, store: Path | None = None, known: Properties
     """Prepare the random properties of a study.
 
     Args:
-        study: `random_field`, `random_field_correlation` and `material` are read.
+        study: `fields`, `field_correlations` and `material` are read.
         site: where they are needed.
         store: as for `field.prepare`.
         known: properties of another study; what a method prepared there for equal correlation and points serves here.
@@ -133,18 +137,18 @@ def prepare(study: Any, site: Site, store: Path | None = None, known: Properties
     """
     entries: dict[str, Property] = {}
     earlier = known.entries.values() if known is not None else ()
-    for name, settings in study.random_field.items():
-        number = next(k for k, material in enumerate(study.material) if material.name == settings.material)
+    for one in study.fields:
         before = [part for entry in (*earlier, *entries.values()) for part in entry.parts]
+        own_site, material = site.of_materials(one.materials), study.material[one.materials[0]]
         try:
-            own = _prepare_property(name, settings, study.material[number], site.of_material(number), store, before)
-            entries[name] = own if len(site.counts) < 2 else _placed(own, study.material, site.counts, number)
+            own = _prepare_property(one.variable, one.settings, material, own_site, store, before)
         except ValueError as error:
-            raise ValueError(f"random_field.{name}: {error}") from None
-    if not study.random_field_correlation:
+            raise ValueError(f"{one.path}: {error}") from None
+        entries[one.name] = own if len(site.counts) < 2 else _placed(own, study.material, site.counts, one.materials)
+    if not study.field_correlations:
         return Properties(entries, None)
-    _check_that_they_share(entries, study.random_field_correlation)
-    return Properties(entries, mixing_matrix(list(entries), study.random_field_correlation))
+    _check_that_they_share(entries, study.field_correlations)
+    return Properties(entries, mixing_matrix(list(entries), study.field_correlations))
 
 
 def realise(properties: Properties, xi: np.ndarray) -> dict[str, np.ndarray]:
@@ -155,13 +159,17 @@ def realise(properties: Properties, xi: np.ndarray) -> dict[str, np.ndarray]:
         xi: standard-normal vector, shape (n_variables,) [-].
 
     Returns:
-        values at the material points by name, shape (n,) each: cohesions [Pa], angles [rad].
+        values at the material points by name of what varies, all materials together, shape (n,) each: cohesions [Pa],
+        angles [rad].
 
     Raises:
         ValueError: `xi` has another shape.
     """
-    fields = standard_normal(properties, xi)
-    return {name: _values(properties.entries[name], z) for name, z in fields.items()}
+    found: dict[str, np.ndarray] = {}
+    for name, z in standard_normal(properties, xi).items():
+        entry = properties.entries[name]
+        found[entry.name] = _values(entry, z, found.get(entry.name))
+    return found
 
 
 def standard_normal(properties: Properties, xi: np.ndarray) -> dict[str, np.ndarray]:
@@ -190,10 +198,10 @@ def standard_normal(properties: Properties, xi: np.ndarray) -> dict[str, np.ndar
 def means(properties: Properties, count: int) -> dict[str, np.ndarray]:
     """Mean of each property in its uppermost soil at the crest, shape (count,) each: what a kernel compiles for."""
     return {
-        name: np.full(count, KINDS[name].value(np.array(entry.parts[0].mean)))
+        entry.name: np.full(count, KINDS[entry.name].value(np.array(entry.parts[0].mean)))
         if entry.elsewhere is None
         else entry.elsewhere.copy()
-        for name, entry in properties.entries.items()
+        for entry in properties.entries.values()
     }
 
 
@@ -227,16 +235,23 @@ def _prepare_property(
     return Property(name, tuple(parts), len(points), taken)
 
 
-def _span(counts: tuple[int, ...], number: int) -> tuple[int, int]:
-    return sum(counts[:number]), sum(counts[: number + 1])
+def _places(counts: tuple[int, ...], numbers: Sequence[int]) -> slice | np.ndarray:
+    """The points of some materials, one material after the other, among those of all."""
+    ends = np.cumsum((0, *counts))
+    if len(numbers) == 1:
+        return slice(int(ends[numbers[0]]), int(ends[numbers[0] + 1]))
+    return np.concatenate([np.arange(ends[number], ends[number + 1]) for number in numbers])
 
 
-def _placed(entry: Property, materials: Any, counts: tuple[int, ...], number: int) -> Property:
-    """The property of one of several materials, with what the others have in its stead."""
+def _placed(entry: Property, materials: Any, counts: tuple[int, ...], own: Sequence[int]) -> Property:
+    """The property of some of several materials, with what the others have in its stead."""
     kind = KINDS[entry.name]
-    numbers = [getattr(material, kind.mean_key, float("nan")) for material in materials]
-    values = np.repeat([float(kind.value(np.array(kind.field_mean(one)))) for one in numbers], counts)
-    return replace(entry, elsewhere=values, span=_span(counts, number))
+    means = [kind.field_mean(getattr(material, kind.mean_key, float("nan"))) for material in materials]
+    values = np.repeat([float(kind.value(np.array(mean))) for mean in means], counts)
+    ratio = None
+    if len(own) > 1:
+        ratio = np.repeat([means[number] / means[own[0]] for number in own], [counts[number] for number in own])
+    return replace(entry, elsewhere=values, places=_places(counts, own), ratio=ratio)
 
 
 def _trend(settings: Any, crest: float) -> Trend | None:
@@ -276,13 +291,15 @@ def _standard_normal(entry: Property, xi: np.ndarray) -> np.ndarray:
     return z
 
 
-def _values(entry: Property, z: np.ndarray) -> np.ndarray:
+def _values(entry: Property, z: np.ndarray, of_others: np.ndarray | None) -> np.ndarray:
+    """Values of a property at all material points [SI], put into those that fields of other materials gave it."""
     values = np.empty(entry.count)
     for part in entry.parts:
         values[part.members] = part.field.marginal.transform(z[part.members])
-    own = KINDS[entry.name].value(values if entry.taken is None else take(values, entry.taken))
+    values = values if entry.taken is None else take(values, entry.taken)
+    own = KINDS[entry.name].value(values if entry.ratio is None else values * entry.ratio)
     if entry.elsewhere is None:
         return own
-    everywhere = entry.elsewhere.copy()
+    everywhere = entry.elsewhere.copy() if of_others is None else of_others
     everywhere[entry.where] = own
     return everywhere

@@ -5,18 +5,16 @@ from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
-from scipy.special import ndtri
 
 from rfmpm import estimators, planning
 from rfmpm.estimators.curves import Band
-from rfmpm.estimators.discretisation import ASSUMED_ORDER, Discretisation, discretisation
+from rfmpm.estimators.discretisation import Discretisation, discretisation, discretisation_of_quantile
 from rfmpm.estimators.question import Exceedances, Value
 from rfmpm.estimators.rows import Rows
 from rfmpm.planning.records import BOUNDED_BY
 from rfmpm.report.members import first_index, flagged
 
 FEWEST_PAIRS = 10  # realisations on two levels; with fewer the error of the cells is not estimated
-RESAMPLES = 200
 STEPS = 12  # at which an answer is followed as rows are added
 
 
@@ -43,9 +41,9 @@ class Answers:
         return design is None or (design.method == "monte_carlo" and design.sampling == "random")
 
     @property
-    def has_chains(self) -> bool:
-        """Whether realisations follow from others, so that the first ones alone are a fair sample."""
-        return planning.has_chains(self.study)
+    def approaches_limit(self) -> bool:
+        """Whether realisations follow from others, nearer to the limit: the first ones alone are a fair sample."""
+        return planning.approaches_limit(self.study)
 
     @property
     def fair_size(self) -> int | None:
@@ -88,7 +86,7 @@ class Answers:
         several levels, whose interval counts them both ways here too.
         """
         rows = self.rows
-        if self.has_chains:  # what followed from a failed one would have been another
+        if self.approaches_limit:  # what followed from a failed one would have been another
             return self.estimate(rows)
         failed = rows.is_failed & (rows.level == 0)
         rows = replace(rows, is_censored=rows.is_censored & (rows.level > 0))
@@ -122,24 +120,13 @@ class Answers:
         if not coarser:
             return None
         asked, cells = self.question, (self.study.discretisation.cell_m, *coarser)
-        functions = Exceedances(np.array([asked.limit])) if asked.kind == "exceedance" else Value()
-        rows = self.rows if self.fair_size is None else self.rows.where(self.rows.index < self.fair_size)
-        found = discretisation(rows, functions, cells, self.confidence)
-        if found is None or found.n < FEWEST_PAIRS:
-            return None
-        return self._of_quantile(found, rows) if asked.kind == "quantile" else found
-
-    def _of_quantile(self, of_mean: Discretisation, rows: Rows) -> Discretisation:
-        """The same for the quantile, from pairs on the two finest levels, resampled; first order is assumed."""
-        own, other = (rows.on_level(k).where(~rows.on_level(k).is_failed) for k in (0, 1))
-        _, mine, theirs = np.intersect1d(own.index, other.index, return_indices=True)
-        pairs, p = np.array([own.value[mine], other.value[theirs]]), self.question.probability
-        drawn = np.random.default_rng(0).integers(mine.size, size=(RESAMPLES, mine.size))
-        ratio = of_mean.cells[1] / of_mean.cells[0]
-        error = float(np.diff(np.quantile(pairs, p, axis=1))[0]) / (ratio - 1.0)
-        scatter = float(np.diff(np.quantile(pairs[:, drawn], p, axis=2), axis=0).std(ddof=1)) / (ratio - 1.0)
-        half = float(ndtri(0.5 + self.confidence / 2.0)) * scatter
-        note = f"order {ASSUMED_ORDER:g} assumed; scatter by resampling"
-        return Discretisation(
-            error, scatter, error - half, error + half, ASSUMED_ORDER, False, of_mean.cells[:2], mine.size, note
-        )
+        rows, stratum = self.rows, None
+        if self.fair_size is not None:
+            rows = self._estimator.used(rows)
+            stratum = self._estimator.strata(rows)
+        if asked.kind == "quantile":
+            found = discretisation_of_quantile(rows, asked.probability, cells, self.confidence, stratum)
+        else:
+            functions = Exceedances(np.array([asked.limit])) if asked.kind == "exceedance" else Value()
+            found = discretisation(rows, functions, cells, self.confidence, stratum)
+        return None if found is None or found.n < FEWEST_PAIRS else found

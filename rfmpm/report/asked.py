@@ -2,16 +2,9 @@
 
 from dataclasses import dataclass
 
+from rfmpm.planning.questions import NOUNS, unit_of
 from rfmpm.report import words
 
-NOUNS = {
-    "run_out": "run-out",
-    "retrogression_distance": "retrogression distance",
-    "influence_distance": "influence distance",
-    "failure_volume": "failure volume",
-    "initial_failure_volume": "volume of the first slide",
-}
-UNITS = {"failure_volume": "m³/m", "initial_failure_volume": "m³/m"}  # of all others: m
 DEFINITIONS = {
     "run_out": "how far the soil travels beyond the toe",
     "retrogression_distance": "how far the failure eats back from the edge of the crest",
@@ -51,7 +44,7 @@ class Asked:
     @property
     def unit(self) -> str:
         """Unit of the quantity."""
-        return UNITS.get(self.quantity, "m")
+        return unit_of(self.quantity).replace("m3", "m³")
 
     @property
     def is_probability(self) -> bool:

@@ -7,7 +7,9 @@ import numpy as np
 from rfmpm.estimators import Estimate
 from rfmpm.estimators.discretisation import Discretisation
 from rfmpm.report import words
+from rfmpm.report.answering import FEWEST_PAIRS
 from rfmpm.report.asked import Asked
+from rfmpm.study.question_models import FIRST_OF_TWO_PHASES
 
 FEW = 10  # members beyond the limit; with fewer a probability rests on a handful of simulations
 EDGE_SHARE = 0.05  # of the simulations at an edge of the model from which the model is the first thing to enlarge
@@ -133,18 +135,31 @@ def _or_rare(s: Standing) -> str:
 
 def _cells(s: Standing, study) -> str:
     if s.budget.discretisation is None:
-        cell, coarser = _pair_of_cells(study)
-        own = "" if cell == study.discretisation.cell_m else f"discretisation.cell_m = {cell:g}, "
-        return (
-            f"Learn what the size of the cells adds: in the study file, {own}coarser_cells_m = [{coarser:g}] and "
-            'method = "multilevel" in [estimator]; the coarser simulations are cheap.'
-        )
+        return _two_sizes(s, study)
     if s.budget.discretisation > s.budget.sampling:
         return (
             f"Use finer cells (discretisation.cell_m, now {study.discretisation.cell_m:g} m): "
             "their size is the larger error, and more simulations cannot lower it."
         )
     return ""
+
+
+def _two_sizes(s: Standing, study) -> str:
+    """How to learn the error of the cells: nothing but time where the study has two sizes of them already."""
+    if study.estimator is not None and study.estimator.coarser_cells_m:
+        return f"Run on: what the size of the cells adds is known from {FEWEST_PAIRS} simulations on both sizes."
+    cell, coarser = _pair_of_cells(study)
+    own = "" if cell == study.discretisation.cell_m else f"discretisation.cell_m = {cell:g}, "
+    method = "multilevel" if s.asked.quantile is not None else "two_phase"  # no gain for a quantile
+    until = ""
+    if study.study.until is None:
+        most = max(study.study.realisations, 2 * FIRST_OF_TWO_PHASES)
+        question = f'quantity = "{s.asked.quantity}", exceeds_m = {s.asked.limit:g}, at_most = {most}'
+        until = f" and in [study], instead of realisations, until = {{ {question} }}"
+    return (
+        f"Learn what the size of the cells adds: in the study file, {own}coarser_cells_m = [{coarser:g}] and "
+        f'method = "{method}" in [estimator]{until}; the coarser simulations are cheap.'
+    )
 
 
 def _pair_of_cells(study) -> tuple[float, float]:

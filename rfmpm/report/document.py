@@ -58,7 +58,7 @@ def _to_picture(numbers: Numbers) -> list[tuple[str, int, float]]:
 
 def _replay(dataset, study) -> planning.Replay:
     """Makes realisations again; nothing is prepared before the first one."""
-    return planning.Replay(study, planning.rows_of(study, dataset) if planning.has_chains(study) else None)
+    return planning.Replay(study, planning.rows_of(study, dataset) if planning.approaches_limit(study) else None)
 
 
 def _page(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], driven: Drivers, study_text: str) -> str:

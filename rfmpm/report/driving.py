@@ -7,8 +7,8 @@ import numpy as np
 
 from rfmpm import planning
 from rfmpm.estimators.sensitivity import FEWEST, arrange, given_data_indices, sobol_indices
+from rfmpm.planning.questions import NOUNS
 from rfmpm.report.answering import Answers
-from rfmpm.report.asked import NOUNS
 from rfmpm.report.members import independent, usable
 from rfmpm.report.style import Picture
 
@@ -40,7 +40,7 @@ def drivers(dataset, study, answers: Answers, replay: "planning.Replay | None") 
     found = Drivers()
     if study.uncertain:
         _of_numbers(found, dataset, study, answers, NOUNS[quantity])
-    if replay is not None and study.random_field:
+    if replay is not None and study.fields:
         _of_fields(found, dataset, study, quantity, replay)
     return found
 
@@ -49,7 +49,7 @@ def _of_numbers(found: Drivers, dataset, study, answers: Answers, noun: str) -> 
     """Sobol indices of a design for them, or first-order ones from independent realisations."""
     from rfmpm.report.sensitivity_figures import given_data_chart, group_labels, sobol_chart
 
-    keys, has_fields = [entry.key for entry in study.uncertain], bool(study.random_field)
+    keys, has_fields = [entry.key for entry in study.uncertain], bool(study.fields)
     if _is_design(study):
         labels = group_labels(keys, has_fields)
         blocks = len(labels) + 2
@@ -90,4 +90,4 @@ def _of_fields(found: Drivers, dataset, study, quantity: str, replay: "planning.
         found.maps.append(
             influence_map(places[prepared.fields[name].where], influence, outline(study), label, NOUNS[quantity])
         )
-        found.numbers[f"influence_of_{name}"] = influence
+        found.numbers[f"influence_of_{name.replace(' ', '_')}"] = influence

@@ -13,7 +13,7 @@ SAMPLE = 200  # realisations behind the statistics; their standard error is then
 
 
 class View(NamedTuple):
-    """How a random property is shown; its statistics are those of its field."""
+    """How a random field is shown; its statistics are those of what varies."""
 
     title: str
     label: str
@@ -32,6 +32,12 @@ VIEWS = {
 }
 
 
+def view_of(field) -> View:
+    """How a field of a study is shown; one in the table of a material says of which."""
+    view, of = VIEWS[field.variable], field.name.removeprefix(field.variable)
+    return view._replace(title=view.title + of, field=view.field + of)
+
+
 def write_field(study, index: int, directory: Path) -> list[str]:
     """Draw one realisation of each random property and compare the statistics of many with the asked ones.
 
@@ -41,7 +47,7 @@ def write_field(study, index: int, directory: Path) -> list[str]:
     Args:
         study: the Study.
         index: of the realisation to draw.
-        directory: gets field.png of the first random property, and field_<name>.png of every further one.
+        directory: gets field.png of the first random field, and field_<name>.png of every further one.
 
     Returns:
         For each soil of each property, lines of a table: asked and found mean, standard deviation and correlations [-],
@@ -55,10 +61,10 @@ def write_field(study, index: int, directory: Path) -> list[str]:
     from rfmpm.random_fields.comparison import compare_properties
     from rfmpm.random_fields.statistics import is_conditional
 
-    if not study.random_field:
+    if not study.fields:
         return ["no random field in this study: every realisation is the same"]
     prepared = realisation.prepare(study)
-    pairs = [entry.between for entry in study.random_field_correlation or ()]
+    pairs = [entry.between for entry in study.field_correlations]
     # Statistics are compared for one soil: that of the study's own values, whatever of it is uncertain.
     first = len(prepared.uncertain)
     xis = (realisation.draw_xi(prepared, i)[first:] for i in range(index, index + SAMPLE))
@@ -66,19 +72,27 @@ def write_field(study, index: int, directory: Path) -> list[str]:
     drawn = properties.realise(prepared.properties, realisation.draw_xi(prepared, index)[first:])
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
+    looks = {field.name: view_of(field) for field in study.fields}
     lines, done = [], []
-    for name, entry in prepared.fields.items():
-        path = directory / (f"field_{name}.png" if done else "field.png")
-        look, soils = VIEWS[name], found.soils[name]
-        lines += property_lines(study.random_field[name], entry, look, soils, SAMPLE)
+    for field in study.fields:
+        name, entry = field.name, prepared.fields[field.name]
+        path = directory / (f"field_{_file_name(field)}.png" if done else "field.png")
+        look, soils = looks[name], found.soils[name]
+        lines += property_lines(field, entry, look, soils, SAMPLE)
         done.append(name)
-        lines += cross_lines([one for one in found.cross if name in one.between and set(one.between) <= {*done}], VIEWS)
+        lines += cross_lines([one for one in found.cross if name in one.between and set(one.between) <= {*done}], looks)
         if any(is_conditional(soil.shares) for soil in soils):
             draw_conditional(study, index, look, entry, soils, [fields[name] for fields in found.first_two], path)
         else:
             points = np.column_stack(prepared.scene.points.position)[entry.where]
-            draw_field(study, index, look, (points, drawn[name][entry.where] / look.per_unit), soils, path)
+            draw_field(study, index, look, (points, drawn[entry.name][entry.where] / look.per_unit), soils, path)
         lines.append(str(path))
     if share := realisation.residual_above_peak(prepared, drawn):
         lines.append(f"residual cohesion above the peak at {share:.1%} of the points: the law takes the peak there")
     return lines
+
+
+def _file_name(field) -> str:
+    """The variable, with the position of the material in whose table the field stands: names may hold anything."""
+    own = f"_of_material_{field.materials[0]}"
+    return field.variable + (own if field.name != field.variable else "")

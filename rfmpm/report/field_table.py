@@ -18,11 +18,11 @@ VALUES = ("mean", "standard_deviation")
 SEEN = 0.1  # standard errors; what is less does not show in a table
 
 
-def property_lines(settings, entry, look, soils: Sequence, count: int) -> list[str]:
-    """Tables of every soil of a random property.
+def property_lines(field, entry, look, soils: Sequence, count: int) -> list[str]:
+    """Tables of every soil of a random field.
 
     Args:
-        settings: the `random_field` entry of the study.
+        field: an entry of the study's `fields`.
         entry: the prepared property.
         look: names and units of the property.
         soils: its soils, compared.
@@ -31,8 +31,8 @@ def property_lines(settings, entry, look, soils: Sequence, count: int) -> list[s
     lines = []
     for soil in soils:
         lines += [
-            f"{look.field}{_where(entry.name, settings, soil.part.soil)}: {method_line(soil.part.field)}",
-            *_notes(settings, entry, soil),
+            f"{look.field}{_where(field, soil.part.soil)}: {method_line(soil.part.field)}",
+            *_notes(field.settings, entry, soil),
             *_table(entry, look, soil, count),
             *data_lines(soil, count),
         ]
@@ -44,10 +44,10 @@ def soil_name(soil: int) -> str:
     return f"layer {soil - 1}" if soil else "soil above the layers"
 
 
-def _where(name: str, settings, soil: int) -> str:
-    if not settings.layer:
+def _where(field, soil: int) -> str:
+    if not field.settings.layer:
         return ""
-    path = f"random_field.{name}" + (f".layer.{soil - 1}" if soil else "")
+    path = field.path + (f".layer.{soil - 1}" if soil else "")
     return f", {soil_name(soil)} ({path})"
 
 
@@ -59,6 +59,7 @@ def _notes(settings, entry, soil) -> list[str]:
         ),
         "those of the field after it is mixed with the earlier one": len(soil.shares) > 1,
         "those of the reference points; what the material points take of them is last": bool(soil.of_means),
+        "those of the first material; in the others all is in proportion to the mean": entry.ratio is not None,
         "those of the standard-normal field, whose correlation makes that of the values as asked": (
             settings.correlation_space == "physical"
         ),

@@ -4,8 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from rfmpm.planning.questions import NOUNS
 from rfmpm.report import words
-from rfmpm.report.asked import NOUNS, UNITS
+from rfmpm.report.asked import Asked
 from rfmpm.report.members import censored_members
 from rfmpm.report.style import BLUE, CHART, CHART_DOTS_PER_INCH, VERMILION, Picture, encode, new_figure
 
@@ -40,7 +41,7 @@ def unvarying(rows) -> list[str]:
     for name in SPREAD:
         values, _ = _of_failing(rows, name)
         if values.size and np.ptp(values) == 0.0:
-            value = words.with_unit(values[0], UNITS.get(name, "m"))
+            value = words.with_unit(values[0], Asked(name).unit)
             sentences.append(f"{_title(name)}: {value} in {_every(values.size, 'realisation that fails')}.")
     return sentences
 
@@ -64,7 +65,7 @@ def _title(name: str) -> str:
 
 
 def _histogram(values: np.ndarray, name: str, bounds: int, completed: int) -> Picture:
-    label, unit = NOUNS[name], UNITS.get(name, "m")
+    label, unit = NOUNS[name], Asked(name).unit
     edges = np.histogram_bin_edges(values, bins="auto")
     if edges.size > MOST_BINS + 1:  # a few far values make the rule ask for hundreds
         edges = np.linspace(edges[0], edges[-1], MOST_BINS + 1)

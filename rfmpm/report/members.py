@@ -39,7 +39,7 @@ def independent(rows, study):
     design = study.estimator
     if design is None or design.sampling != "saltelli":
         return rows
-    blocks = saltelli_size(len(study.uncertain), bool(study.random_field))
+    blocks = saltelli_size(len(study.uncertain), bool(study.fields))
     return rows.isel(realisation=rows["realisation"].values % blocks == 0)
 
 

@@ -110,7 +110,7 @@ def _answer(rows, study, answers: Answers) -> dict:
         question,
         answer,
         parts,
-        is_random=bool(study.random_field or study.uncertain),
+        is_random=bool(study.fields or study.uncertain),
         at_back=int(np.sum(flagged(rows, "retrogression_censored") & completed)),
         at_front=int(np.sum(flagged(rows, "run_out_censored") & completed)),
         wanted=answers.question.wanted_half_width(answer.value),
@@ -130,7 +130,7 @@ def _answer(rows, study, answers: Answers) -> dict:
 
 
 def _choice(answers: Answers) -> str:
-    if answers.has_chains:
+    if answers.approaches_limit:
         return "sought near the limit"
     return "" if answers.fair_size is None else "chosen where the coarser ones leave the answer open"
 

@@ -26,7 +26,7 @@ def setting(study) -> str:
     Returns:
         A sentence.
     """
-    varied = ", ".join(name.replace("_", " ") for name in study.random_field)
+    varied = ", ".join(name.replace("_", " ") for name in dict.fromkeys(field.variable for field in study.fields))
     soil = f"whose {varied} varies from place to place" if varied else "of the same strength everywhere"
     doubt = " Some of its numbers are uncertain." if study.uncertain else ""
     return f"{_body(study)} {soil}.{doubt}"
@@ -54,10 +54,10 @@ def _body(study) -> str:
 
 
 def _strength(study) -> str:
-    if not study.random_field:
+    if not study.fields:
         return "Its strength is the same everywhere and in every realisation."
     kind = "body" if study.geometry.kind == "regions" else study.geometry.kind
-    properties = "; ".join(_random_property(study, name, field) for name, field in study.random_field.items())
+    properties = "; ".join(_random_property(study, field) for field in study.fields)
     return (
         f"Its strength varies from place to place: {properties}. "
         f"Each realisation is one such {kind} with its own pattern of weak and strong zones, followed "
@@ -65,11 +65,12 @@ def _strength(study) -> str:
     )
 
 
-def _random_property(study, name: str, field) -> str:
-    key, unit = MEANS[name]
-    mean = getattr(next(m for m in study.material if m.name == field.material), key)
+def _random_property(study, field) -> str:
+    (key, unit), settings = MEANS[field.variable], field.settings
+    means = [(f"{getattr(study.material[k], key):g}{unit}", study.material[k].name) for k in field.materials]
+    mean = means[0][0] if len(means) == 1 else " and ".join(f"{value} in {name}" for value, name in means)
     return (
-        f"{name.replace('_', ' ')} has a mean of {mean:g}{unit} and a coefficient of variation of "
-        f"{100 * field.coefficient_of_variation:g} %, and stays alike over about "
-        f"{field.scale_of_fluctuation_h_m:g} m along and {field.scale_of_fluctuation_v_m:g} m across the layering"
+        f"{field.name.replace('_', ' ')} has a mean of {mean} and a coefficient of variation of "
+        f"{100 * settings.coefficient_of_variation:g} %, and stays alike over about "
+        f"{settings.scale_of_fluctuation_h_m:g} m along and {settings.scale_of_fluctuation_v_m:g} m across the layering"
     )

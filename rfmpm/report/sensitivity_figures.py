@@ -28,10 +28,12 @@ def label_of(key: str) -> str:
     name = name[:-2] + DIRECTIONS.get(name[-2:], name[-2:])
     if places[0] == "boundary":
         return f"friction of the {places[1]}"
-    if places[0] != "random_field":
+    if "random_field" not in places:
         return name
-    layer = f", layer {int(places[3]) + 1}" if "layer" in places else ""
-    return f"{places[1].replace('_', ' ')}{layer}: {name}"
+    at = places.index("random_field")
+    layer = f", layer {int(places[at + 3]) + 1}" if "layer" in places else ""
+    soil = f" of material {int(places[1]) + 1}" if at else ""
+    return f"{places[at + 1].replace('_', ' ')}{soil}{layer}: {name}"
 
 
 def group_labels(keys: list[str], has_fields: bool) -> list[str]:

@@ -1,15 +1,15 @@
 """What correlated random fields of a study must satisfy: they vary alike in space, and their coefficients agree."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from math import sqrt
 from typing import Any
 
 from rfmpm.study.errors import Problem
-from rfmpm.study.field_models import FieldLayer, RandomField
+from rfmpm.study.field_models import FieldLayer, OwnField, RandomField
 from rfmpm.study.kinds import Table
 from rfmpm.study.known import Known, path_of, problem
 from rfmpm.study.schema import shown
-from rfmpm.study.soils import layers_of
+from rfmpm.study.soils import layers_of, material_above, paths_of_fields
 
 # Keys that say what the values are; all others say how they vary in space, and are those of both fields.
 OF_THE_VALUES = {
@@ -29,31 +29,49 @@ OF_THE_DISTRIBUTION = {  # with what it is where left out
 SMALLEST_PIVOT = 1e-12  # of the matrix of the coefficients; below it a field would be no more than the others
 
 
-def _pairs(known: Known) -> Iterator[tuple[str, str, str]]:
-    """Path of each correlation and its two fields."""
-    for number in range(len(known["random_field_correlation"] or ())):
-        path = f"random_field_correlation.{number}"
+def _pairs(known: Known, fields: str) -> Iterator[tuple[str, str, str]]:
+    """Path of each correlation and its two fields, of the fields in one table."""
+    correlations = f"{fields}_correlation"
+    for number in range(len(known[correlations] or ())):
+        path = f"{correlations}.{number}"
         yield path, known[f"{path}.between.0"], known[f"{path}.between.1"]
 
 
+def _tables(known: Known) -> Iterator[tuple[str, Collection[str]]]:
+    """Paths of the tables of fields, and the variables in each: that of the study, then those of its materials."""
+    for place in ("", *(f"material.{index}." for index in range(len(known["material"])))):
+        yield f"{place}random_field", known[f"{place}random_field"] or ()
+
+
+def _present_pairs(known: Known) -> Iterator[tuple[str, str]]:
+    """Paths of the two fields of each correlation between two that exist."""
+    for fields, names in _tables(known):
+        for _, first, second in _pairs(known, fields):
+            if first != second and first in names and second in names:
+                yield f"{fields}.{first}", f"{fields}.{second}"
+
+
+def _keys_in_space(field: str) -> set[str]:
+    model = OwnField if material_above(field) else RandomField
+    return model.model_fields.keys() - OF_THE_VALUES - {"layer"}
+
+
 def _correlated_fields_exist_once(known: Known) -> Iterator[Problem]:
-    seen = set()
-    for path, first, second in _pairs(known):
-        for place, name in enumerate((first, second)):
-            if name not in known["random_field"]:
-                text = f"is not random in this study: add the table random_field.{name}, or leave this one out"
-                yield problem(known, f"{path}.between.{place}", text)
-        if first == second or frozenset((first, second)) in seen:
-            yield problem(known, f"{path}.between", "must be two different fields, and each pair once")
-        seen.add(frozenset((first, second)))
+    for fields, names in _tables(known):
+        seen = set()
+        for path, first, second in _pairs(known, fields):
+            for place, name in enumerate((first, second)):
+                if name not in names:
+                    text = f"is not random in this study: add the table {fields}.{name}, or leave this one out"
+                    yield problem(known, f"{path}.between.{place}", text)
+            if first == second or frozenset((first, second)) in seen:
+                yield problem(known, f"{path}.between", "must be two different fields, and each pair once")
+            seen.add(frozenset((first, second)))
 
 
 def _correlated_fields_vary_alike(known: Known) -> Iterator[Problem]:
-    for _, first, second in _pairs(known):
-        if first == second or not {first, second} <= known["random_field"].keys():
-            continue
-        own, other = f"random_field.{first}", f"random_field.{second}"
-        for key in RandomField.model_fields.keys() - OF_THE_VALUES - {"layer"}:
+    for own, other in _present_pairs(known):
+        for key in _keys_in_space(own):
             if (asked := known[f"{own}.{key}"]) != known[f"{other}.{key}"]:
                 text = f"must be that of {own}, with which it is correlated: {'left out' if asked is None else asked}"
                 yield _unequal(known, f"{other}.{key}", text)
@@ -64,10 +82,7 @@ def _correlated_fields_vary_alike(known: Known) -> Iterator[Problem]:
 
 def _correlated_values_have_one_distribution(known: Known) -> Iterator[Problem]:
     """Fields whose correlation is that of the values share one standard-normal field's only if distributed alike."""
-    for _, first, second in _pairs(known):
-        if first == second or not {first, second} <= known["random_field"].keys():
-            continue
-        own, other = f"random_field.{first}", f"random_field.{second}"
+    for own, other in _present_pairs(known):
         if known[f"{own}.averaging"] == "volume":
             chosen = 'averaging = "volume"'
         elif known[f"{own}.correlation_space"] == "physical":
@@ -92,13 +107,12 @@ def _correlated_values_have_one_distribution(known: Known) -> Iterator[Problem]:
 
 def _the_first_of_them_has_the_data(known: Known) -> Iterator[Problem]:
     """The later of two correlated fields is a share of the earlier one and what is independent of it."""
-    order = list(known["random_field"])
-    for _, *pair in _pairs(known):
-        if set(pair) <= set(order):
-            key = f"random_field.{max(pair, key=order.index)}.data"
-            if known[key]:
-                text = "must be left out: of correlated fields only the first in the study may have data"
-                yield Problem(path_of(key), f"{text}; write this one before the others")
+    order = [field for _, field in paths_of_fields(known)]
+    for pair in _present_pairs(known):
+        key = f"{max(pair, key=order.index)}.data"
+        if known[key]:
+            text = "must be left out: of correlated fields only the first in the study may have data"
+            yield Problem(path_of(key), f"{text}; write this one before the others")
 
 
 def _unequal(known: Known, key: str, text: str) -> Problem:
@@ -116,21 +130,28 @@ def _values(known: Known, path: str, model: type[Table], without: set[str]) -> d
 
 def _coefficients_allow_each_other(known: Known) -> Iterator[Problem]:
     """The matrix of the coefficients must be positive definite: it has a Cholesky factor."""
-    names = list(known["random_field"])
-    matrix = [[float(i == j) for j in names] for i in names]
-    for path, *pair in _pairs(known):
-        if set(pair) <= set(names) and pair[0] != pair[1]:
-            i, j = (names.index(name) for name in pair)
-            matrix[i][j] = matrix[j][i] = known[f"{path}.coefficient"]
-    lower = [[0.0] * len(names) for _ in names]
-    for i in range(len(names)):
+    for fields, variables in _tables(known):
+        names = list(variables)
+        matrix = [[float(i == j) for j in names] for i in names]
+        for path, *pair in _pairs(known, fields):
+            if set(pair) <= set(names) and pair[0] != pair[1]:
+                i, j = (names.index(name) for name in pair)
+                matrix[i][j] = matrix[j][i] = known[f"{path}.coefficient"]
+        if not _has_factor(matrix):
+            text = "has coefficients that exclude each other: bring one of them closer to 0"
+            yield Problem(path_of(f"{fields}_correlation"), text)
+
+
+def _has_factor(matrix: list[list[float]]) -> bool:
+    """Whether a symmetric matrix has a Cholesky factor."""
+    lower = [[0.0] * len(matrix) for _ in matrix]
+    for i in range(len(matrix)):
         for j in range(i + 1):
             left = matrix[i][j] - sum(lower[i][k] * lower[j][k] for k in range(j))
             if i == j and left <= SMALLEST_PIVOT:
-                text = "has coefficients that exclude each other: bring one of them closer to 0"
-                yield Problem(("random_field_correlation",), text)
-                return
+                return False
             lower[i][j] = sqrt(left) if i == j else left / lower[j][j]
+    return True
 
 
 CORRELATION_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [

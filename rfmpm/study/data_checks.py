@@ -19,6 +19,7 @@ from rfmpm.study.soils import (
     outline_of_body,
     outline_of_soil,
     over_scales,
+    paths_of_fields,
     soil_at,
     soils_of,
 )
@@ -57,16 +58,15 @@ def _soils_of_data(known: Known) -> Iterator[tuple[str, str, list[tuple[Datum, i
 
 
 def _data_files_are_read(known: Known) -> Iterator[Problem]:
-    for variable in known["random_field"]:
-        key = f"random_field.{variable}.data_file"
+    for _, field in paths_of_fields(known):
+        key = f"{field}.data_file"
         if known[key] is not None:
             text = "is read where a study is loaded: use load_study, or give its content as data"
             yield problem(known, key, text)
 
 
 def _data_agree(known: Known) -> Iterator[Problem]:
-    for variable in known["random_field"]:
-        field = f"random_field.{variable}"
+    for _, field in paths_of_fields(known):
         data = _data_of(known, field)
         labels = [datum.path.removeprefix(f"{field}.") for datum in data]
         values = [(*datum.place, datum.value, datum.error) for datum in data]

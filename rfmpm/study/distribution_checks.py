@@ -6,7 +6,7 @@ from rfmpm.study.bodies import height_of
 from rfmpm.study.errors import Problem
 from rfmpm.study.field_checks import LARGEST_VARIATION
 from rfmpm.study.known import Known, path_of, problem
-from rfmpm.study.soils import fields_of, layers_of, soils_of
+from rfmpm.study.soils import fields_of, layers_of, paths_of_fields, soils_of
 
 BOUNDED = ("beta", "bounded_tanh")
 NEEDED_BY = {"upper_over_mean": BOUNDED, "sample": ("empirical",), "matern_nu": ("matern",)}
@@ -26,13 +26,8 @@ HIGHEST_TANH_SHARE = 0.9  # of the largest variance between the bounds
 HIGHEST_TRUNCATED_COEFFICIENT_OF_VARIATION = 0.99  # towards 1 a truncated normal becomes exponential
 
 
-def _fields(known: Known) -> Iterator[str]:
-    for variable in known["random_field"]:
-        yield f"random_field.{variable}"
-
-
 def _has_what_it_needs(known: Known) -> Iterator[Problem]:
-    for field in _fields(known):
+    for _, field in paths_of_fields(known):
         for key, users in NEEDED_BY.items():
             chooser = CHOSEN_BY.get(key, "distribution")
             chosen, value = known[f"{field}.{chooser}"], known[f"{field}.{key}"]
@@ -66,7 +61,7 @@ def _highest_variation(known: Known, field: str) -> tuple[float, str] | None:
 
 
 def _variation_suits_the_distribution(known: Known) -> Iterator[Problem]:
-    for field in _fields(known):
+    for _, field in paths_of_fields(known):
         if (limit := _highest_variation(known, field)) is None:
             continue
         highest, where = limit
@@ -92,7 +87,7 @@ def _variation_at_the_base_suits_the_distribution(known: Known) -> Iterator[Prob
 
 
 def _sample_shows_a_shape(known: Known) -> Iterator[Problem]:
-    for field in _fields(known):
+    for _, field in paths_of_fields(known):
         sample = known[f"{field}.sample"]
         if sample is None or known[f"{field}.distribution"] != "empirical":
             continue
@@ -104,14 +99,14 @@ def _sample_shows_a_shape(known: Known) -> Iterator[Problem]:
 
 
 def _sample_file_is_read(known: Known) -> Iterator[Problem]:
-    for field in _fields(known):
+    for _, field in paths_of_fields(known):
         if known[f"{field}.sample_file"] is not None:
             text = "is read where a study is loaded: use load_study, or give its content as sample"
             yield problem(known, f"{field}.sample_file", text)
 
 
 def _an_average_has_no_nugget(known: Known) -> Iterator[Problem]:
-    for field in _fields(known):
+    for _, field in paths_of_fields(known):
         if known[f"{field}.averaging"] == "volume" and known[f"{field}.nugget"] > 0.0:
             text = 'must be 0 where averaging = "volume": what differs from point to point averages out'
             yield problem(known, f"{field}.nugget", text)

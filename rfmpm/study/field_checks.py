@@ -7,41 +7,89 @@ from rfmpm.study.bodies import height_of
 from rfmpm.study.errors import Problem
 from rfmpm.study.known import Known, path_of, problem
 from rfmpm.study.schema import one_of
-from rfmpm.study.soils import FRICTIONAL, LAWS_WITH, MEAN_KEY, fields_of, layers_of, soils_of
+from rfmpm.study.soils import (
+    FRICTIONAL,
+    LAWS_WITH,
+    MEAN_KEY,
+    fields_of,
+    layers_of,
+    material_above,
+    materials_of,
+    means_of_fields,
+    paths_of_fields,
+    soils_of,
+)
 
 SOFTENS_WITH = {"von_mises": "softening_modulus_kpa"} | dict.fromkeys(FRICTIONAL, "residual_plastic_strain")
 SEPARABLE = ("markov_separable", "gaussian", "second_order_markov", "cosine_exponential")
 FACTORISED = {"ar1": ("markov_separable",), "kronecker": SEPARABLE}  # methods along x and y, and their correlations
 LARGEST_VARIATION_OF_FRICTION = 0.5  # of tan phi, for which 0.05 to 0.2 are reported
 LARGEST_VARIATION = 2.0
+OF_ONE_MATERIAL = {  # why a field of several materials cannot have them
+    "layer": "give each material a field of its own",
+    "data": "the data would be of which material? Give each a field of its own",
+    "trend_kpa_per_m": "a gain in kPa is that of one mean",
+    "standard_deviation_trend_kpa_per_m": "a gain in kPa is that of one mean",
+}
 
 
 def _field_has_its_material(known: Known) -> Iterator[Problem]:
-    for variable in known["random_field"]:
-        key = f"random_field.{variable}.material"
-        asked = known[key]
+    for variable, field in paths_of_fields(known):
         laws = {known[f"material.{i}.name"]: known[f"material.{i}.law"] for i in range(len(known["material"]))}
         if not laws:
             return
-        if asked not in laws:
-            yield problem(known, key, f"names no material; must be {one_of(list(laws), asked)}")
-        elif laws[asked] not in LAWS_WITH[variable]:
-            text = f'is a material with law = "{laws[asked]}", which has no {variable}'
-            yield problem(known, key, text)
+        if material := material_above(field):
+            if (law := known[f"{material}.law"]) not in LAWS_WITH[variable]:
+                yield Problem(path_of(field), f'is of a material with law = "{law}", which has no {variable}')
+            continue
+        others = range(len(known[f"{field}.shared_with"] or ()))
+        for key in (f"{field}.material", *(f"{field}.shared_with.{number}" for number in others)):
+            asked = known[key]
+            if asked not in laws:
+                yield problem(known, key, f"names no material; must be {one_of(list(laws), asked)}")
+            elif laws[asked] not in LAWS_WITH[variable]:
+                text = f'is a material with law = "{laws[asked]}", which has no {variable}'
+                yield problem(known, key, text)
+
+
+def _material_has_one_field_of_a_variable(known: Known) -> Iterator[Problem]:
+    taken: dict[tuple[str, str], str] = {}
+    for variable, field in paths_of_fields(known):
+        for material in materials_of(known, field):
+            other = taken.setdefault((variable, material), field)
+            if other != field:
+                text = f"is a second one: {other} is of {known[f'{material}.name']}, too; leave one out"
+                yield Problem(path_of(field), text)
+        if material_above(field):
+            continue
+        named = [known[f"{field}.material"]]
+        for number, name in enumerate(known[f"{field}.shared_with"] or ()):
+            if name in named:
+                yield problem(known, f"{field}.shared_with.{number}", "is named twice; leave it out")
+            named.append(name)
+
+
+def _shared_field_suits_all_its_materials(known: Known) -> Iterator[Problem]:
+    for _, field, _ in fields_of(known):
+        if material_above(field) or not known[f"{field}.shared_with"]:
+            continue
+        for key, why in OF_ONE_MATERIAL.items():
+            if known[f"{field}.{key}"]:
+                yield Problem(path_of(f"{field}.{key}"), f"must be left out where there is shared_with: {why}")
 
 
 def _random_property_has_a_mean(known: Known) -> Iterator[Problem]:
-    for variable, _, material in fields_of(known):
+    for variable, field, material in means_of_fields(known):
         key = f"{material}.{MEAN_KEY[variable]}"
         if known[key] is None:
-            text = f"missing; must be a number greater than 0, the mean of random_field.{variable}"
+            text = f"missing; must be a number greater than 0, the mean of {field}"
             yield Problem(path_of(key), text)
         elif known[key] == 0.0:
             yield problem(known, key, "must be greater than 0, the mean of its random field")
 
 
 def _random_residual_is_reached(known: Known) -> Iterator[Problem]:
-    for variable, field, material in fields_of(known):
+    for variable, field, material in means_of_fields(known):
         key = f"{material}.{SOFTENS_WITH[known[f'{material}.law']]}"
         if variable == "residual_cohesion" and not known[key]:
             text = f"must be given and greater than 0 where there is a {field}, else no point comes to its residual"
@@ -132,6 +180,8 @@ def _errors_have_data(known: Known) -> Iterator[Problem]:
 
 FIELD_CHECKS: list[Callable[[Known], Iterator[Problem]]] = [
     _field_has_its_material,
+    _material_has_one_field_of_a_variable,
+    _shared_field_suits_all_its_materials,
     _random_property_has_a_mean,
     _random_residual_is_reached,
     _friction_varies_little,

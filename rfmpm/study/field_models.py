@@ -43,10 +43,9 @@ class Datum(Table):
     )
 
 
-class RandomField(Table):
-    """[random_field.<variable>]"""
+class OwnField(Table):
+    """[material.random_field.<variable>] of the material in whose table it stands, about its own strength"""
 
-    material: Text = Field(description="Name of the material whose variable is random")
     distribution: Literal["lognormal", "normal_truncated", "beta", "bounded_tanh", "gamma", "weibull", "empirical"] = (
         Field(description="Marginal distribution")
     )
@@ -134,6 +133,17 @@ class RandomField(Table):
     reference_value: Literal["mean", "point"] | None = Field(
         None, description="What a larger cell's point takes of the reference: mean over its square (default), or point"
     )
+
+
+class _Materials(Table):
+    material: Text = Field(description="Name of the material whose variable is random")
+    shared_with: Annotated[tuple[Text, ...], Hint("names of materials")] | None = Field(
+        None, description="Further materials through which the same field runs, about their own means; left out: none"
+    )
+
+
+class RandomField(OwnField, _Materials):
+    """[random_field.<variable>] of the material that it names"""
 
 
 class FieldCorrelation(Table):

@@ -2,7 +2,7 @@
 
 from rfmpm.ground import is_plain, regions_of, size_of_body
 from rfmpm.study.field_checks import SEPARABLE
-from rfmpm.study.field_models import RandomField
+from rfmpm.study.field_models import OwnField
 from rfmpm.study.study import Study
 
 ALWAYS_MADE = ("ar1", "kronecker", "cholesky")  # on any points that checks let pass, of a correlation at points
@@ -22,14 +22,14 @@ def fields_need_making(study: Study) -> bool:
         which must hold a point; a method that is limited in what it can resolve, such as that for many points of a
         correlation that is no product along x and y.
     """
-    return any(_needs_making(field, _count(study)) for field in study.random_field.values())
+    return any(_needs_making(field.settings, _count(study)) for field in study.fields)
 
 
 def with_fastest_methods(study: Study) -> Study:
     """The study with `auto` for every method that would only take longer to refuse, or to allow, the same fields."""
-    fields = study.random_field.items()
-    names = [name for name, field in fields if field.method in ALWAYS_MADE and _is_separable(field)]
-    return study.with_changes({f"random_field.{name}.method": "auto" for name in names})
+    fields = [(field.path, field.settings) for field in study.fields]
+    paths = [path for path, field in fields if field.method in ALWAYS_MADE and _is_separable(field)]
+    return study.with_changes({f"{path}.method": "auto" for path in paths})
 
 
 def _count(study: Study) -> float:
@@ -40,18 +40,18 @@ def _count(study: Study) -> float:
     return length * height / study.discretisation.cell_m**2 * study.discretisation.points_per_cell
 
 
-def _needs_making(field: RandomField, count: float) -> bool:
+def _needs_making(field: OwnField, count: float) -> bool:
     has_few = field.reference_cell_m is None and count <= FEW_POINTS
     is_limited = not (field.method in ALWAYS_MADE or (field.method == "auto" and (has_few or _is_separable(field))))
     is_checked = bool(field.data or field.layer) or field.distribution == "empirical"
     return _is_mapped(field) or is_limited or is_checked
 
 
-def _is_mapped(field: RandomField) -> bool:
+def _is_mapped(field: OwnField) -> bool:
     return field.correlation_space == "physical" or field.averaging == "volume"
 
 
-def _is_separable(field: RandomField) -> bool:
+def _is_separable(field: OwnField) -> bool:
     """Whether `auto` makes the field on any lattice: its correlation is a product along x and y."""
     turned = [field.rotation_deg]
     for layer in field.layer or ():

@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, Strict
 
+from rfmpm.study.field_models import FieldCorrelation, OwnField, Property
 from rfmpm.study.kinds import Inclination, Length, NotNegative, Number, Positive, Table, Text, whole
 from rfmpm.study.question_models import LARGEST_COUNT, Question
 from rfmpm.study.schema import Hint
@@ -82,6 +83,12 @@ class ElasticMaterial(Table):
     unit_weight_kn_m3: Positive = Field(description="Unit weight [kN/m3]")
     youngs_modulus_kpa: Positive = Field(description="Young's modulus [kPa]")
     poissons_ratio: Number = Field(ge=0, le=0.49, description="Poisson's ratio [1]")
+    random_field: dict[Property, OwnField] | None = Field(
+        None, description="Random variables of this material alone; left out: none but those of [random_field]"
+    )
+    random_field_correlation: tuple[FieldCorrelation, ...] | None = Field(
+        None, description="Correlation between these; left out: they are independent"
+    )
 
 
 class VonMisesMaterial(ElasticMaterial):

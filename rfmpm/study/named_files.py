@@ -16,7 +16,7 @@ REGION: dict[str, tuple[str, Read]] = {"file": ("corners_m", read_region)}
 
 
 def read_named_files(tables: Mapping[str, Any], folder: Path) -> tuple[dict[str, Any], list[str]]:
-    """Replace the keys of `CONTENT` in every random field, and `file` in every region, by what the files hold.
+    """Replace the keys of `CONTENT` in random fields, a material's own too, and `file` in regions, by their content.
 
     Args:
         tables: of the study file; not changed.
@@ -25,13 +25,14 @@ def read_named_files(tables: Mapping[str, Any], folder: Path) -> tuple[dict[str,
     Returns:
         the tables without names of files, and what is wrong with the files, with the lines.
     """
-    changed, problems = dict(tables), []
-    fields, geometry = tables.get("random_field"), tables.get("geometry")
-    if isinstance(fields, Mapping):
-        changed["random_field"] = dict(fields)
-        for variable, entry in fields.items():
-            place = "random_field", str(variable)
-            changed["random_field"][variable] = _replaced(place, entry, CONTENT, folder, problems)
+    problems: list[str] = []
+    changed = _fields_replaced((), tables, folder, problems)
+    materials, geometry = tables.get("material"), tables.get("geometry")
+    if isinstance(materials, list | tuple):
+        changed["material"] = [
+            _fields_replaced(("material", number), material, folder, problems)
+            for number, material in enumerate(materials)
+        ]
     if isinstance(geometry, Mapping) and isinstance(geometry.get("region"), list | tuple):
         regions = [
             _replaced(("geometry", "region", number), entry, REGION, folder, problems)
@@ -39,6 +40,19 @@ def read_named_files(tables: Mapping[str, Any], folder: Path) -> tuple[dict[str,
         ]
         changed["geometry"] = {**geometry, "region": regions}
     return changed, problems
+
+
+def _fields_replaced(place: tuple[str | int, ...], table: Any, folder: Path, problems: list[str]) -> Any:
+    """A table whose random fields name no files; what is wrong with them is added to `problems`."""
+    if not isinstance(table, Mapping):
+        return table
+    changed = dict(table)
+    if isinstance(fields := table.get("random_field"), Mapping):
+        changed["random_field"] = {
+            variable: _replaced((*place, "random_field", str(variable)), entry, CONTENT, folder, problems)
+            for variable, entry in fields.items()
+        }
+    return changed
 
 
 def _replaced(

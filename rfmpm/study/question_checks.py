@@ -7,6 +7,7 @@ from math import isclose
 from rfmpm.study.errors import Problem
 from rfmpm.study.known import Known, path_of, problem
 from rfmpm.study.question_models import DEFAULTS, FIRST_OF_TWO_PHASES, READERS, TOWARDS_LIMIT, reads
+from rfmpm.study.soils import has_fields
 
 UNTIL, OWN = "study.until", "estimator"
 UNIT = {"failure_volume": "m3_per_m", "initial_failure_volume": "m3_per_m"}  # of all others: m
@@ -95,7 +96,7 @@ def _method_has_what_it_needs(known: Known) -> Iterator[Problem]:
         yield problem(known, f"{OWN}.method", text)
     if sampling == "saltelli" and not known["uncertain"]:
         yield problem(known, f"{OWN}.sampling", "finds what uncertain numbers matter: add [[uncertain]]")
-    elif (method, sampling) != ("monte_carlo", "random") and not (known["random_field"] or known["uncertain"]):
+    elif (method, sampling) != ("monte_carlo", "random") and not (has_fields(known) or known["uncertain"]):
         key = "method" if method != "monte_carlo" else "sampling"
         text = "has no use where nothing is random: add a random_field or [[uncertain]]"
         yield problem(known, f"{OWN}.{key}", text)
@@ -107,7 +108,7 @@ def _design_is_whole(known: Known) -> Iterator[Problem]:
         return
     size = known[f"{OWN}.replicate_size"]
     if chosen[1] == "saltelli":
-        size = saltelli_size(len(known["uncertain"] or ()), bool(known["random_field"]))
+        size = saltelli_size(len(known["uncertain"] or ()), has_fields(known))
     if chosen[1] == "sobol" and size is not None and size & (size - 1):
         below = 1 << (size.bit_length() - 1)
         text = f"must be a power of two for sobol; nearest: {below} or {2 * below}"
@@ -196,9 +197,10 @@ def level_tables(tables: dict, cell: float) -> dict:
     found.pop(OWN, None)
     own = found["discretisation"]["cell_m"]
     found["discretisation"]["cell_m"] = cell
-    for field in found.get("random_field", {}).values():
-        if field.get("reference_cell_m") is None:
-            field["reference_cell_m"] = own
+    for table in (found, *found["material"]):
+        for field in (table.get("random_field") or {}).values():
+            if field.get("reference_cell_m") is None:
+                field["reference_cell_m"] = own
     return found
 
 

@@ -7,6 +7,7 @@ from rfmpm.ground import height_at
 from rfmpm.study.bodies import ground_of, height_of, is_plain_body, size_of
 from rfmpm.study.errors import Problem
 from rfmpm.study.known import Known, problem
+from rfmpm.study.soils import paths_of_fields
 
 LARGEST_POINT_COUNT = 5_000_000
 LARGEST_CELL_COUNT = 20_000_000
@@ -72,11 +73,11 @@ def _points_are_affordable(known: Known) -> Iterator[Problem]:
     if count > LARGEST_POINT_COUNT:
         yield problem(known, "discretisation.cell_m", _too_many("material points", count, LARGEST_POINT_COUNT, cell))
         return
-    for variable in known["random_field"]:
-        method, reference = f"random_field.{variable}.method", known[f"random_field.{variable}.reference_cell_m"]
-        carriers = count if reference is None else _lattice_points(known, f"random_field.{variable}")
+    for _, field in paths_of_fields(known):
+        method, reference = f"{field}.method", known[f"{field}.reference_cell_m"]
+        carriers = count if reference is None else _lattice_points(known, field)
         if carriers > LARGEST_POINT_COUNT:
-            yield problem(known, f"random_field.{variable}.reference_cell_m", _too_fine(cell, reference, carriers))
+            yield problem(known, f"{field}.reference_cell_m", _too_fine(cell, reference, carriers))
             continue
         if known[method] == "cholesky" and carriers > LARGEST_CHOLESKY_COUNT:
             what, key = ("material", "discretisation.cell_m") if reference is None else ("lattice", "reference_cell_m")

@@ -5,7 +5,7 @@ from math import cos, hypot, radians, sin, sqrt, tan
 from typing import NamedTuple
 
 from rfmpm.study.bodies import Place, hull_of, is_plain_body
-from rfmpm.study.known import Known
+from rfmpm.study.known import Known, Unknown
 
 FRICTIONAL = ("mohr_coulomb", "drucker_prager")
 LAWS_WITH = {
@@ -52,14 +52,63 @@ class Soil(NamedTuple):
         return (self.mean * self.variation + self.deviation_gain * depth) / self.mean_at(depth)
 
 
+def tables_of_fields(known: Known) -> Iterator[str]:
+    """Paths of the tables that hold random fields: that of the study, then those of its materials."""
+    yield "random_field"
+    for index in range(len(known["material"])):
+        if _is_there(known, table := f"material.{index}.random_field"):
+            yield table
+
+
+def paths_of_fields(known: Known) -> Iterator[tuple[str, str]]:
+    """Variable and path of all random fields."""
+    for table in tables_of_fields(known):
+        for variable in known[table]:
+            if _is_there(known, field := f"{table}.{variable}"):
+                yield variable, field
+
+
+def has_fields(known: Known) -> bool:
+    """Whether anything varies from place to place."""
+    return any(True for _ in paths_of_fields(known))
+
+
+def _is_there(known: Known, path: str) -> bool:
+    """Whether there is something at a path that is no wrong key itself."""
+    try:
+        return known[path] is not None
+    except Unknown:
+        return False
+
+
+def material_above(field: str) -> str | None:
+    """Path of the material in whose table a field stands; None for a field of the study."""
+    return field.partition(".random_field.")[0] if field.startswith("material.") else None
+
+
+def materials_of(known: Known, field: str) -> list[str]:
+    """Paths of the materials that have a field, as far as there are such; first the one whose mean is the field's."""
+    if material := material_above(field):
+        return [material]
+    paths = {known[f"material.{index}.name"]: f"material.{index}" for index in range(len(known["material"]))}
+    names = [known[f"{field}.material"], *(known[f"{field}.shared_with"] or ())]
+    return [paths[name] for name in names if name in paths]
+
+
 def fields_of(known: Known) -> Iterator[tuple[str, str, str]]:
-    """Variable, path of its field and path of its material, for the fields that have one."""
-    for variable in known["random_field"]:
-        for index in range(len(known["material"])):
-            material = f"material.{index}"
-            is_its_own = known[f"{material}.name"] == known[f"random_field.{variable}.material"]
-            if is_its_own and known[f"{material}.law"] in LAWS_WITH[variable]:
-                yield variable, f"random_field.{variable}", material
+    """Variable, path of its field and path of the material whose mean it has, for the fields that have one."""
+    for variable, field in paths_of_fields(known):
+        for material in materials_of(known, field)[:1]:
+            if known[f"{material}.law"] in LAWS_WITH[variable]:
+                yield variable, field, material
+
+
+def means_of_fields(known: Known) -> Iterator[tuple[str, str, str]]:
+    """As `fields_of`, for every material that has the field."""
+    for variable, field in paths_of_fields(known):
+        for material in materials_of(known, field):
+            if known[f"{material}.law"] in LAWS_WITH[variable]:
+                yield variable, field, material
 
 
 def layers_of(known: Known, field: str) -> list[str]:
@@ -87,7 +136,7 @@ def of_field(variable: str, value: float) -> float:
 def outline_of_body(known: Known, field: str) -> list[Place]:
     """Corners of the body, anticlockwise from the lower left [m]; of several soils the hull of the field's own."""
     if not is_plain_body(known):
-        return hull_of(known, known[f"{field}.material"])
+        return hull_of(known, known[f"{materials_of(known, field)[0]}.name"])
     height = known["geometry.height_m"]
     if known["geometry.kind"] == "slope":
         crest = known["geometry.crest_m"]

@@ -15,6 +15,7 @@ from rfmpm.study.checks import joint_problems
 from rfmpm.study.diagnosis import Diagnosis
 from rfmpm.study.errors import Problem, StudyError
 from rfmpm.study.field_models import FieldCorrelation, Property, RandomField
+from rfmpm.study.fields import CorrelatedFields, FieldOfSoils, correlated_fields, fields_of
 from rfmpm.study.geometry_models import Geometry, Load, Obstacle
 from rfmpm.study.kinds import Table
 from rfmpm.study.known import Known, path_of
@@ -106,6 +107,16 @@ class Study(Table):
         if self.discretisation.volumetric_strain is None:
             has_friction = any(isinstance(material, FrictionalMaterial) for material in self.material)
             object.__setattr__(self.discretisation, "volumetric_strain", "point" if has_friction else "cell_mean")
+
+    @property
+    def fields(self) -> tuple[FieldOfSoils, ...]:
+        """All random fields: those of [random_field], then each material's own; in this order they take of `xi`."""
+        return fields_of(self)
+
+    @property
+    def field_correlations(self) -> tuple[CorrelatedFields, ...]:
+        """All correlations between random fields."""
+        return correlated_fields(self)
 
     @property
     def physics_hash(self) -> str:

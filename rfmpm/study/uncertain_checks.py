@@ -13,7 +13,7 @@ from rfmpm.study.uncertain_models import uniform_limits
 from rfmpm.study.uncertain_models import value_at as quantile
 
 PLACES = ("material", "boundary.base", "boundary.sides", "random_field", "random_field_correlation")
-LISTS = ("layer",)  # inside a random field
+BELOW = ("layer", "random_field", "random_field_correlation")  # tables inside these
 NUMERICAL = ("softening_reference_cell_m", "reference_cell_m", "karhunen_loeve_variance_share")  # no property of soil
 CAPPED = ("residual_cohesion_kpa", "residual_friction_angle_deg", "residual_dilation_angle_deg")  # at their peaks
 DEVIATIONS = 4.0  # of the standard normal; one value in 16 000 lies further out
@@ -39,7 +39,7 @@ def _numbers_below(known: Known, annotation: Any, place: str) -> dict[str, tuple
     for name, info in chosen(members, data).model_fields.items():
         if bare(info.annotation) is float and name not in NUMERICAL:
             found[f"{place}.{name}"] = info.annotation, info
-        elif name in LISTS:
+        elif name in BELOW:
             found |= _numbers_below(known, info.annotation, f"{place}.{name}")
     return found
 

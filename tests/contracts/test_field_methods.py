@@ -9,6 +9,9 @@ from itertools import product
 import numpy as np
 import pytest
 
+import rfmpm
+from rfmpm import realisation
+from rfmpm.random_fields import properties
 from rfmpm.random_fields.correlation import CORRELATIONS
 from rfmpm.random_fields.methods import METHODS, choose, covariance_error
 from rfmpm.random_fields.methods.circulant import Circulant
@@ -204,3 +207,25 @@ def test_a_fresh_record_is_intact_and_one_for_other_points_is_not(method):
     assert not METHODS[method].is_intact(record, points_of("part")[:-1])
     broken = record._replace(**{record._fields[0]: np.zeros((3, 3, 3))})
     assert not METHODS[method].is_intact(broken, points_of("part"))
+
+
+@every_method
+def test_two_soils_have_independent_fields_and_the_first_is_as_if_it_were_alone(method):
+    own = {f"material.{k}.random_field.cohesion.{key}": value for k in (0, 1) for key, value in settings_of(method)}
+    coarse = {"discretisation.cell_m": 1.0, "discretisation.points_per_cell": 1, "material.0.softening_length_m": None}
+    study = rfmpm.load_study("configs/layered_slope.toml").with_changes(coarse | own)
+    both = realisation.prepare(study)
+    alone = realisation.prepare(study.with_changes({"material.1.random_field": None}))
+    xi, count = realisation.draw_xi(both, 3), both.scene.soils.counts[0]
+    fields = properties.realise(both.properties, xi)["cohesion"]
+    first = properties.realise(alone.properties, xi[: alone.n_variables])["cohesion"]
+    np.testing.assert_array_equal(fields[:count], first[:count])
+    assert len(set(fields[count:])) > 0.9 * len(fields[count:])
+    other = np.concatenate([xi[: alone.n_variables], -xi[alone.n_variables :]])  # the second soil's part, mirrored
+    moved = properties.realise(both.properties, other)["cohesion"]
+    np.testing.assert_array_equal(moved[:count], first[:count])
+    assert np.all(moved[count:] != fields[count:])
+
+
+def settings_of(method: str):
+    return ("method", method), ("correlation", "markov_separable")  # which all methods take

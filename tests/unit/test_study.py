@@ -352,6 +352,7 @@ def test_value_of_a_drained_soil_out_of_range_is_refused_once_by_its_path(draine
 
 def test_every_key_of_a_drained_soil_has_a_range_test(drained):
     shared = {"name", "law", "unit_weight_kn_m3", "youngs_modulus_kpa", "poissons_ratio"}
+    shared |= {"random_field", "random_field_correlation"}
     assert type(drained.material[0]).model_fields.keys() == shared | REFUSED_DRAINED.keys()
 
 

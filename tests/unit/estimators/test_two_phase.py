@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rfmpm.estimators import Question, Rows, TwoPhase
+from rfmpm.estimators import Exceedances, Question, Rows, TwoPhase, Value
+from rfmpm.estimators.discretisation import discretisation, discretisation_of_quantile
 from rfmpm.estimators.strata import natural_breaks, quotas
 
 MEAN = Question("run_out")
@@ -70,7 +71,7 @@ def test_what_lies_beyond_a_gap_of_its_stratum_is_not_used():
     estimator, found = campaign(1, MEAN, 96)
     own = found.on_level(0).index
     holed = found.where((found.level > 0) | (found.index != own[40]))
-    of = estimator._strata(found)
+    of = estimator.strata(found)
     expected = own[(of[own] != of[own[40]]) | (own < own[40])]
     assert list(estimator.used(holed).on_level(0).index) == list(expected)
 
@@ -86,3 +87,55 @@ def test_unequal_shares_do_not_bias_and_intervals_cover(kind):
     assert covered > 0.95 - 4.0 * np.sqrt(0.05 * 0.95 / 200)
     plain = {"mean": np.sqrt(0.8 + 0.05 * 100.0 + 0.8 * 121.0 - truth**2), "exceedance": np.sqrt(0.85 * 0.15)}[kind]
     assert values.std(ddof=1) < 0.7 * plain / np.sqrt(64)
+
+
+REPEATS = 200
+CELLS = (0.25, 0.5)
+FUNCTIONS = {"mean": Value(), "exceedance": Exceedances(np.array([5.0]))}
+
+
+def cells_of(kind: str, estimator: TwoPhase, found: Rows):
+    used = estimator.used(found)
+    return discretisation(used, FUNCTIONS[kind], CELLS, stratum=estimator.strata(used))
+
+
+@pytest.mark.parametrize("kind", FUNCTIONS)
+def test_all_pairs_tell_the_error_of_the_cells_without_bias_and_with_its_scatter(kind):
+    question = Question("run_out", kind, limit=5.0 if kind == "exceedance" else None)
+    # ratio 2, order 1: coarser less finer. Those that fail on own cells alone, and 1 m more for the others
+    truth = {"mean": -(0.05 * 10.0 + 0.8 * 1.0), "exceedance": -0.05}[kind]
+    campaigns = [campaign(seed, question, 64) for seed in range(REPEATS)]
+    found = [cells_of(kind, *one) for one in campaigns]
+    values, errors = (np.array([getattr(one, key) for one in found]) for key in ("error", "standard_error"))
+    assert {one.n for one in found} == {64}
+    scatter = values.std(ddof=1)
+    assert abs(values.mean() - truth) < 4.0 * scatter / np.sqrt(REPEATS)
+    covered = np.mean([one.lower <= truth <= one.upper for one in found])
+    assert covered > 0.95 - 4.0 * np.sqrt(0.05 * 0.95 / REPEATS)
+    squares = (values - values.mean()) ** 2
+    tolerance = 4.0 * np.hypot(squares.std(ddof=1), (errors**2).std(ddof=1)) / np.sqrt(REPEATS)
+    assert np.mean(errors**2) > scatter**2 - tolerance
+    if kind == "mean":  # that of a probability has what a difference not seen would add
+        assert np.mean(errors**2) < scatter**2 + tolerance
+    first = [discretisation(rows.where(rows.index < 32), FUNCTIONS[kind], CELLS) for _, rows in campaigns]
+    assert scatter < 0.7 * np.std([one.error for one in first], ddof=1)  # they alone were used before
+
+
+def test_the_error_of_the_cells_of_a_quantile_weighs_the_strata_too():
+    # 0.2 stand on coarse cells, but a third of the pairs: the quantile of a quarter would lie among them
+    estimator, found = campaign(5, MEAN, 512)
+    used = estimator.used(found)
+    cells = discretisation_of_quantile(used, 0.25, CELLS, stratum=estimator.strata(used))
+    own, coarse = outcomes(5, 200_000)
+    truth = np.quantile(coarse, 0.25) - np.quantile(own, 0.25)
+    assert cells.n == 512
+    assert abs(cells.error - truth) < 4.0 * cells.standard_error
+    assert abs(discretisation_of_quantile(used, 0.25, CELLS).error - truth) > 4.0 * cells.standard_error
+
+
+def test_a_stratum_without_pairs_leaves_the_error_to_the_others():
+    estimator, found = campaign(1, MEAN, 96)
+    of = estimator.strata(found)
+    lost = found.where((found.level > 0) | (of[found.index] != of[found.on_level(1).value == 0.0][0]))
+    cells = discretisation(lost, Value(), CELLS, stratum=of)
+    assert cells.error == pytest.approx(-1.0, abs=4.0 * cells.standard_error)

@@ -1,5 +1,7 @@
 """The first screen: the answer in one sentence, what weakens it, what to do next."""
 
+import re
+import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +10,7 @@ from synthetic import make_ensemble, make_study
 
 from rfmpm.estimators import Estimate
 from rfmpm.estimators.discretisation import Discretisation
+from rfmpm.planning import question_of
 from rfmpm.report import answer, sections
 from rfmpm.report.asked import Asked
 from rfmpm.report.budget import Standing, budget, next_steps
@@ -88,6 +91,33 @@ def test_the_budget_adds_the_cells_and_says_which_error_is_larger():
         Standing(budget=replace(whole, discretisation=0.01, failed=0.0), **standing | {"wanted": 0.02}), study
     )
     assert "about 400 simulations in all" in steps[0]  # twice the half width that is wanted
+
+
+def hint_of(study):
+    """What the page says of the cells before their error is known."""
+    numbers = analyse(make_ensemble(study, n=16), study)
+    return next(step for step in numbers.next_steps if "the size of the cells adds" in step)
+
+
+@pytest.mark.parametrize(
+    "until", [None, {"quantity": "run_out", "at_most": 80}, {"quantity": "run_out", "quantile": 0.9}]
+)
+def test_a_study_that_follows_the_hint_is_right(until):
+    study = make_study() if until is None else asking(until | {"at_most": 80})
+    found = dict(re.findall(r"(coarser_cells_m|method|until) = (\[.*?\]|\".*?\"|\{.*?\})", hint_of(study)))
+    tables = tomllib.loads("\n".join(f"{key} = {value}" for key, value in found.items()))
+    assert tables["method"] == ("two_phase" if until is None or "quantile" not in until else "multilevel")
+    asked = tables.pop("until", None)
+    assert (asked is None) == (until is not None)
+    changes = {"study.until": asked, "study.realisations": None} if asked else {}
+    followed = study.with_changes(changes | {"estimator": tables})
+    assert question_of(followed).kind == question_of(study).kind
+
+
+def test_a_study_with_two_sizes_of_cells_is_told_to_run_on():
+    levels = {"method": "two_phase", "coarser_cells_m": [0.5]}
+    study = asking({"quantity": "run_out", "at_most": 80}).with_changes({"estimator": levels})
+    assert hint_of(study) == "Run on: what the size of the cells adds is known from 10 simulations on both sizes."
 
 
 def test_electricity_is_computing_time_times_the_assumed_power():

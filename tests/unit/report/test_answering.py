@@ -108,6 +108,6 @@ def test_of_two_phases_the_page_shows_the_first_realisations_and_the_answer_uses
     assert not any("missing index" in warning for warning in answer.warnings(numbers, phases))
     assert numbers.answer.n == PAIRS
     assert "double sampling" in numbers.answer.method
-    assert numbers.discretisation.n == 32
+    assert numbers.discretisation.n == PAIRS  # chosen ones too, by their strata
     assert numbers.settling.value[-1] == numbers.answer.value
     assert numbers.mean_run_out.n == 32  # another question than the study's, but for which the rows were not chosen

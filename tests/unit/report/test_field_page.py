@@ -107,6 +107,31 @@ def drained(**changes):
     return load_study("configs/drained_cross_correlated.toml").with_changes({"discretisation.cell_m": 1.0} | changes)
 
 
+def test_every_material_has_the_statistics_of_its_own_field_and_a_picture(tmp_path):
+    lines = write_field(load_study("configs/layered_slope.toml"), 0, tmp_path)
+    heads = [k for k, line in enumerate(lines) if ": method " in line]
+    assert [lines[k].split(":")[0] for k in heads] == ["cohesion of clay", "cohesion of stiff clay"]
+    asked = [("17.0000", "4.2500"), ("60.0000", "24.0000")]
+    for (mean, deviation), start, end in zip(asked, heads, [heads[1], len(lines)], strict=True):
+        numbers = numbers_of(lines[start:end])
+        assert (numbers["mean [kPa]"][0], numbers["standard deviation [kPa]"][0]) == (float(mean), float(deviation))
+        assert all(abs(ratio) < 4.0 for *_, ratio in numbers.values())  # standard errors
+    pictures = sorted(path.name for path in tmp_path.iterdir())
+    assert pictures == ["field.png", "field_cohesion_of_material_1.png"]
+
+
+def test_a_shared_field_is_that_of_the_first_material(tmp_path, words_only):
+    study = load_study("configs/layered_slope.toml")
+    shared = study.material[0].random_field["cohesion"].model_dump(exclude_unset=True)
+    shared |= {"material": "clay", "shared_with": ["stiff clay"]}
+    none = {"material.0.random_field": None, "material.1.random_field": None}
+    lines = write_field(study.with_changes({"random_field.cohesion": shared} | none), 0, tmp_path)
+    numbers = numbers_of(lines)
+    assert numbers["mean [kPa]"][0] == 17.0
+    assert all(abs(ratio) < 4.0 for *_, ratio in numbers.values())  # standard errors
+    assert any(line.endswith("first material; in the others all is in proportion to the mean") for line in lines)
+
+
 def test_correlated_properties_are_compared_with_each_other_and_after_they_are_mixed(tmp_path, words_only):
     lines = write_field(drained(), 0, tmp_path)
     row = next(k for k, line in enumerate(lines) if line.startswith("cohesion with tangent of the angle of friction"))

@@ -37,6 +37,8 @@ def pixels(picture):
         ("random_field.cohesion.scale_of_fluctuation_v_m", "cohesion: scale of fluctuation, vertical"),
         ("random_field.cohesion.layer.1.mean_kpa", "cohesion, layer 2: mean"),
         ("random_field.cohesion.trend_kpa_per_m", "cohesion: trend"),
+        ("material.1.random_field.cohesion.trend_kpa_per_m", "cohesion of material 2: trend"),
+        ("material.1.random_field.cohesion.layer.0.mean_kpa", "cohesion of material 2, layer 1: mean"),
     ],
 )
 def test_keys_read_as_words(key, label):

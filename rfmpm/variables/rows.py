@@ -1,18 +1,21 @@
-"""THE table of variables: what a row, a simulation file and their NetCDF attributes hold; nothing else names them.
+"""The table of what a row holds: what came of a realisation, and where it was computed.
 
 A text in `attributes` may name settings of the study in braces, e.g. `{study.quantities.displacement_threshold_m}`;
 the file then records the value that was used.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
-STATUS = {"ok": 0, "not_at_rest": 1, "diverged": 2, "left_grid": 3, "timeout": 4, "crashed": 5, "lost": 6, "refused": 7}
-FAILED = frozenset({"diverged", "left_grid", "timeout", "crashed", "lost", "refused"})  # their quantities are NaN
-STATUS_NAMES = {code: name for name, code in STATUS.items()}
-FAILED_CODES = frozenset(STATUS[name] for name in FAILED)
-BY_CHANCE = frozenset(STATUS[name] for name in ("timeout", "crashed", "lost"))  # may end otherwise the next time
+from rfmpm.variables.status import FAILED, STATUS
+from rfmpm.variables.variable import (
+    Variable,
+    has_factor,
+    has_obstacle,
+    has_surface,
+    is_uncertain,
+    starts_otherwise,
+    table,
+)
 
 _YES_NO = {"flag_values": (0, 1), "flag_meanings": "no yes"}
 _FAILED_SET = (
@@ -21,56 +24,11 @@ _FAILED_SET = (
 )
 
 
-def _always(study) -> bool:
-    return True
-
-
-def _has_surface(study) -> bool:
-    return study.output.surface_bin_m is not None
-
-
-def _has_obstacle(study) -> bool:
-    return bool(study.obstacle)
-
-
-def _has_factor(study) -> bool:
-    return bool(study.quantities.factor_of_safety)
-
-
-def _starts_otherwise(study) -> bool:
-    return study.time.initial_stress != "elastic"
-
-
-def _is_uncertain(study) -> bool:
-    return study.uncertain is not None
-
-
-def _varies(name: str) -> Callable[[Any], bool]:
-    return lambda study: name in study.random_field
-
-
-@dataclass(frozen=True)
-class Variable:
-    """One variable: its place in a file, its unit (empty for flags and texts) and its definition."""
-
-    name: str
-    dims: tuple[str, ...]
-    dtype: str
-    unit: str
-    long_name: str
-    attributes: Mapping[str, Any] = field(default_factory=dict)
-    is_active: Callable[[Any], bool] = _always
-
-
 def _quantity(name, unit, long_name, comment, dtype="float64", **attributes) -> Variable:
     return Variable(name, ("realisation",), dtype, unit, long_name, {"comment": comment, **attributes})
 
 
-def _table(*variables: Variable) -> dict[str, Variable]:
-    return {variable.name: variable for variable in variables}
-
-
-VARIABLES = _table(
+VARIABLES = table(
     _quantity(
         "run_out",
         "m",
@@ -187,7 +145,7 @@ VARIABLES = _table(
             "comment": "Norm of the unbalanced forces on the free nodes before the first step, over that of gravity's; "
             "known where the simulation failed, too."
         },
-        _starts_otherwise,
+        starts_otherwise,
     ),
     Variable(
         "factor_of_safety",
@@ -200,7 +158,7 @@ VARIABLES = _table(
             "equilibrium gives the smallest over slip surfaces, strength_reduction the number by which cohesion and "
             "tan(phi) can be divided; known where the simulation failed, missing where the method has no solution."
         },
-        _has_factor,
+        has_factor,
     ),
     Variable(
         "impact_force_peak",
@@ -209,7 +167,7 @@ VARIABLES = _table(
         "N m-1",
         "largest force on the obstacles per metre of width",
         {"comment": "Horizontal, to the right positive; the largest mean over 0.1 s of model time, all obstacles."},
-        _has_obstacle,
+        has_obstacle,
     ),
     Variable(
         "final_surface",
@@ -218,7 +176,7 @@ VARIABLES = _table(
         "m",
         "height of the final ground surface",
         {"comment": "Highest ground in each bin, above the base; 0 where the base is bare, missing where it failed."},
-        _has_surface,
+        has_surface,
     ),
     Variable(
         "uncertain_value",
@@ -227,11 +185,11 @@ VARIABLES = _table(
         "",
         "values of the uncertain numbers of the study",
         {"comment": "Each in the unit that its key ends in; missing where the realisation crashed or was lost."},
-        _is_uncertain,
+        is_uncertain,
     ),
 )
 
-PROVENANCE = _table(
+PROVENANCE = table(
     _quantity(
         "attempt",
         "1",
@@ -249,111 +207,6 @@ PROVENANCE = _table(
 )
 
 RUN_DEPENDENT = frozenset({"wall_time", *PROVENANCE})  # no part of what a campaign found: left out of its hash
-
-COORDINATES = _table(
-    Variable(
-        "realisation",
-        ("realisation",),
-        "int64",
-        "1",
-        "index of the realisation",
-        {"comment": "Computed again, bit for bit, by: rfmpm rerun DIR --index INDEX [--level LEVEL]."},
-    ),
-    Variable(
-        "level",
-        ("realisation",),
-        "int32",
-        "1",
-        "level of the plan",
-        {
-            "comment": "On whose cells it was simulated: 0 for the study's own, k for the k-th of its "
-            "estimator.coarser_cells_m. A realisation has the same random numbers on every level."
-        },
-    ),
-    Variable(
-        "x",
-        ("x",),
-        "float64",
-        "m",
-        "horizontal position of the bin centre",
-        {"axis": "X", "comment": "From the left side of the domain."},
-        _has_surface,
-    ),
-    Variable(
-        "uncertain",
-        ("uncertain",),
-        "str",
-        "",
-        "key of an uncertain number",
-        {"comment": "Dotted path in the study, lists by position."},
-        _is_uncertain,
-    ),
-)
-
-
-def _point(name, unit, long_name, dims=("time", "point"), is_active=_always, **attributes) -> Variable:
-    return Variable(name, dims, "float64", unit, long_name, attributes, is_active)
-
-
-POINT_VARIABLES = _table(
-    _point("x", "m", "horizontal position"),
-    _point("y", "m", "height above the base"),
-    _point("x_initial", "m", "horizontal position at the start", ("point",)),
-    _point("y_initial", "m", "height above the base at the start", ("point",)),
-    _point("displacement_x", "m", "horizontal displacement"),
-    _point("displacement_y", "m", "vertical displacement", comment="Positive upwards."),
-    _point("velocity_x", "m s-1", "horizontal velocity"),
-    _point("velocity_y", "m s-1", "vertical velocity", comment="Positive upwards."),
-    _point("stress_xx", "Pa", "horizontal normal stress", comment="Tension positive."),
-    _point("stress_yy", "Pa", "vertical normal stress", comment="Tension positive."),
-    _point("stress_zz", "Pa", "out-of-plane normal stress", comment="Tension positive."),
-    _point("stress_xy", "Pa", "shear stress"),
-    _point("plastic_strain", "1", "plastic shear strain invariant"),
-    _point("cohesion", "Pa", "peak cohesion", ("point",)),
-    _point(
-        "residual_cohesion",
-        "Pa",
-        "residual cohesion of its random field",
-        ("point",),
-        _varies("residual_cohesion"),
-        comment="Counts as far as it is below the peak cohesion.",
-    ),
-    _point("friction_angle", "rad", "peak angle of friction", ("point",), _varies("friction_angle")),
-    _point("volume", "m3 m-1", "volume of the point per metre of width"),
-)
-
-HISTORY_VARIABLES = _table(
-    _point("kinetic_energy", "J m-1", "kinetic energy per metre of width", ("history_time",)),
-    _point("front", "m", "horizontal position of the front of the failed mass", ("history_time",)),
-    _point("crest", "m", "horizontal position of the crest edge", ("history_time",)),
-    _point(
-        "impact_force",
-        "N m-1",
-        "horizontal force on the obstacles per metre of width, mean since the entry before",
-        ("history_time",),
-        _has_obstacle,
-    ),
-    _point("failed_volume", "m3 m-1", "initial volume of the failed set per metre of width", ("history_time",)),
-)
-
-
-_MEAN = "Mean since the sample before: the difference of velocities over that time; 0 at the start."
-
-
-def _motion(name, unit, long_name, dims=("motion_time", "history_point"), **attributes) -> Variable:
-    return _point(name, unit, long_name, dims, **attributes)
-
-
-MOTION_VARIABLES = _table(
-    _motion("history_x", "m", "horizontal position of the point at the start", ("history_point",)),
-    _motion("history_y", "m", "height of the point above the base at the start", ("history_point",)),
-    _motion("history_displacement_x", "m", "horizontal displacement of the point"),
-    _motion("history_displacement_y", "m", "vertical displacement of the point", comment="Positive upwards."),
-    _motion("history_velocity_x", "m s-1", "horizontal velocity of the point"),
-    _motion("history_velocity_y", "m s-1", "vertical velocity of the point", comment="Positive upwards."),
-    _motion("history_acceleration_x", "m s-2", "horizontal acceleration of the point", comment=_MEAN),
-    _motion("history_acceleration_y", "m s-2", "vertical acceleration of the point", comment=f"Upwards. {_MEAN}"),
-)
 
 
 def active_variables(study) -> list[Variable]:
