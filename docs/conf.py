@@ -12,7 +12,7 @@ project = "rfmpm"
 author = "the rfmpm developers"
 release = version = version_of("rfmpm")
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
 root_doc = "docs/index"
 include_patterns = ["docs/**.md", "reports/**.md"]
 exclude_patterns = ["docs/_build", ".*", "build", "dist", "results", "rfmpm*", "tests", "configs", "workflows"]
@@ -27,8 +27,10 @@ autodoc_typehints = "none"  # the docstrings say shapes and units, which types d
 nitpick_ignore_regex = [("py:.*", r"(np|xr|numpy|xarray|pydantic)\..*"), ("py:class", "(optional|array_like|.* of .*)")]
 
 html_theme = "furo"
+html_math_renderer = "mathml"
 html_title = f"rfmpm {release}"
 templates_path = ["_templates"]
+html_static_path = ["_static"]
 html_additional_pages = {"index": "to_docs.html"}
 html_show_sphinx = html_show_copyright = html_copy_source = False
 
