@@ -12,6 +12,8 @@ from rfmpm.mpm import geometry
 from rfmpm.mpm import scene as scenes
 from rfmpm.random_fields import properties as random_properties
 from rfmpm.random_fields.marginals import Marginal
+from rfmpm.random_fields.property import Properties, Property
+from rfmpm.random_fields.site import Site
 from rfmpm.stability import ASSUMPTIONS, Side, lay
 from rfmpm.study import StudyError
 from rfmpm.uncertainty import fitted, marginals, values
@@ -23,7 +25,7 @@ class Prepared:
 
     study: Any
     scene: scenes.Scene
-    properties: random_properties.Properties
+    properties: Properties
     uncertain: tuple[Marginal, ...] = ()  # distributions of the study's uncertain numbers
     sides: tuple[Side, ...] | None = None  # for the factor of safety, where the study asks for it
 
@@ -33,7 +35,7 @@ class Prepared:
         return len(self.uncertain) + self.properties.n_variables
 
     @property
-    def fields(self) -> dict[str, random_properties.Property]:
+    def fields(self) -> dict[str, Property]:
         """The random properties by name."""
         return self.properties.entries
 
@@ -67,7 +69,7 @@ def _sides(study, scene: scenes.Scene) -> tuple[Side, ...] | None:
         raise StudyError([f"quantities.factor_of_safety: {error}"]) from None
 
 
-def prepare_fields(study) -> random_properties.Properties:
+def prepare_fields(study) -> Properties:
     """Prepare the random fields of a study alone, without the scene in which they vary.
 
     Raises:
@@ -84,8 +86,8 @@ def _properties(
     points: np.ndarray,
     counts: tuple[int, ...],
     store: Path | None,
-    known: random_properties.Properties | None = None,
-) -> random_properties.Properties:
+    known: Properties | None = None,
+) -> Properties:
     try:
         return random_properties.prepare(study, _site(study, shape, points, counts), store, known)
     except ValueError as error:
@@ -145,8 +147,8 @@ def realise_fields(study, index: int, level: int = 0, xi: np.ndarray | None = No
     return random_properties.realise(own.properties, of_fields)
 
 
-def _site(study, body: geometry.Body, points: np.ndarray, counts: tuple[int, ...]) -> random_properties.Site:
+def _site(study, body: geometry.Body, points: np.ndarray, counts: tuple[int, ...]) -> Site:
     """Where the fields of a study are needed."""
     cell = study.discretisation.cell_m
     square = cell / sqrt(study.discretisation.points_per_cell)
-    return random_properties.Site(points, cell, square, body.height, body.reach, counts)
+    return Site(points, cell, square, body.height, body.reach, counts)

@@ -18,6 +18,7 @@ from rfmpm.observer import Observer
 from rfmpm.outcome import Outcome, measure, verdict
 from rfmpm.preparation import Prepared, draw_xi, drawn, prepare, prepare_fields, realise_fields
 from rfmpm.random_fields import properties as random_properties
+from rfmpm.random_fields.property import Properties
 from rfmpm.stability import METHODS, Strength, strength_of
 from rfmpm.study import StudyError
 from rfmpm.uncertainty import values
@@ -245,7 +246,7 @@ def stability(
 
 
 def _without_chance(prepared: Prepared) -> Prepared:
-    return replace(prepared, properties=random_properties.Properties({}, None), uncertain=())
+    return replace(prepared, properties=Properties({}, None), uncertain=())
 
 
 def _factor(prepared: Prepared, fields: dict[str, np.ndarray]) -> dict[str, float]:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from rfmpm.random_fields import field as random_field
-from rfmpm.random_fields.properties import Properties
+from rfmpm.random_fields.property import Properties
 from rfmpm.realisation import Prepared
 
 

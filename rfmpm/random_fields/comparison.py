@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from rfmpm.random_fields.common import take
-from rfmpm.random_fields.properties import Part, Properties, Property, standard_normal
+from rfmpm.random_fields.properties import standard_normal
+from rfmpm.random_fields.property import Part, Properties, Property
 from rfmpm.random_fields.statistics import (
     Asked,
     Share,

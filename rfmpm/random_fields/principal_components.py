@@ -15,7 +15,8 @@ import numpy as np
 
 from rfmpm.kernel_tools.threads import single_blas_thread
 from rfmpm.random_fields import store
-from rfmpm.random_fields.properties import Properties, standard_normal
+from rfmpm.random_fields.properties import standard_normal
+from rfmpm.random_fields.property import Properties
 
 MOST_ENTRIES = 60_000_000  # of A: 0.5 GB
 PROBES = 3  # vectors of which the fields tell studies apart in the store

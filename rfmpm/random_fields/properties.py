@@ -8,9 +8,9 @@ those of its soils, from above all layers down; the part of a soil is what its m
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -20,103 +20,12 @@ from rfmpm.random_fields.cross_correlation import mix, mixing_matrix
 from rfmpm.random_fields.kinds import KINDS
 from rfmpm.random_fields.layers import settings_of_soils, soil_of_points
 from rfmpm.random_fields.measurements import measurements
-from rfmpm.random_fields.trend import ByDepth, Scaled, Trend
+from rfmpm.random_fields.property import Part, Properties, Property
+from rfmpm.random_fields.site import Site, places_of
+from rfmpm.random_fields.trend import Trend
 
 ANYWHERE = ("cholesky", "local_kriging")  # methods for which points need no lattice
 NO_POINTS = "no point lies in this soil, which its borders make too thin for these cells, or hide behind each other"
-
-
-class Site(NamedTuple):
-    """Where fields are needed."""
-
-    points: np.ndarray  # material points, shape (n, 2) [m]
-    cell: float  # side of a cell [m]
-    square: float  # side of the square that a material point stands for [m]
-    crest: float  # height of the crest, from which depths are measured [m]
-    extent: tuple[float, float]  # length and height from the origin that squares of any cell size may touch [m]
-    counts: tuple[int, ...] = ()  # points of each material, in the order of the study; empty: of one
-
-    @property
-    def middles(self) -> np.ndarray:
-        """Middles of the points' squares, shape (n, 2) [m]; where the surface cuts a square, its point is elsewhere."""
-        return (np.floor(self.points / self.square + 1e-9) + 0.5) * self.square
-
-    def of_materials(self, numbers: Sequence[int]) -> "Site":
-        """Where a field of some of the materials is needed."""
-        if len(self.counts) < 2:
-            return self
-        counts = tuple(self.counts[number] for number in numbers)
-        return self._replace(points=self.points[_places(self.counts, numbers)], counts=counts)
-
-
-@dataclass(frozen=True)
-class Part:
-    """The field of one soil: its settings, the mean at the crest [unit of the field] and the points that carry it."""
-
-    soil: int  # 0 above all layers, k in the k-th of the list
-    settings: Any
-    mean: float
-    points: np.ndarray  # (m, 2) [m]
-    members: np.ndarray | slice  # their places among all points that carry the property
-    field: field.PreparedField
-
-    @property
-    def at_crest(self) -> field.PreparedField:
-        """The field as if its distribution were everywhere that at the crest: itself where it has no trend."""
-        marginal = self.field.marginal
-        if not isinstance(marginal, Scaled | ByDepth):
-            return self.field
-        return replace(self.field, marginal=marginal.crest)
-
-
-@dataclass(frozen=True)
-class Property:
-    """A random property, ready to be realised.
-
-    Attributes:
-        name: one of KINDS.
-        parts: the fields of its soils that have points.
-        count: number of points that carry it.
-        taken: which of them each material point takes, shape (n, k); None where the material points carry it.
-        elsewhere: values at the points of all materials in SI units, its own without variation, shape (n,); NaN where a
-            law has no such property. None where there is one material.
-        places: the points of its own materials among those of all; None where there is one material.
-        ratio: mean of the material of each of these points over that of the first, shape (m,); None: one material.
-    """
-
-    name: str
-    parts: tuple[Part, ...]
-    count: int
-    taken: np.ndarray | None
-    elsewhere: np.ndarray | None = None
-    places: slice | np.ndarray | None = None
-    ratio: np.ndarray | None = None
-
-    @property
-    def where(self) -> slice | np.ndarray:
-        """The points of its own materials among those of all."""
-        return slice(None) if self.places is None else self.places
-
-    @property
-    def n_variables(self) -> int:
-        """Length of its part of `xi`."""
-        return sum(part.field.n_variables for part in self.parts)
-
-
-@dataclass(frozen=True)
-class Properties:
-    """All random properties of a study, by the names of `Study.fields`.
-
-    `mixing` is what makes correlated ones of their standard-normal fields; None: they are independent.
-    """
-
-    entries: dict[str, Property]
-    mixing: np.ndarray | None
-
-    @property
-    def n_variables(self) -> int:
-        """Length of the vector `xi`."""
-        return sum(entry.n_variables for entry in self.entries.values())
 
 
 def prepare(study: Any, site: Site, store: Path | None = None, known: Properties | None = None) -> Properties:
@@ -235,14 +144,6 @@ def _prepare_property(
     return Property(name, tuple(parts), len(points), taken)
 
 
-def _places(counts: tuple[int, ...], numbers: Sequence[int]) -> slice | np.ndarray:
-    """The points of some materials, one material after the other, among those of all."""
-    ends = np.cumsum((0, *counts))
-    if len(numbers) == 1:
-        return slice(int(ends[numbers[0]]), int(ends[numbers[0] + 1]))
-    return np.concatenate([np.arange(ends[number], ends[number + 1]) for number in numbers])
-
-
 def _placed(entry: Property, materials: Any, counts: tuple[int, ...], own: Sequence[int]) -> Property:
     """The property of some of several materials, with what the others have in its stead."""
     kind = KINDS[entry.name]
@@ -251,7 +152,7 @@ def _placed(entry: Property, materials: Any, counts: tuple[int, ...], own: Seque
     ratio = None
     if len(own) > 1:
         ratio = np.repeat([means[number] / means[own[0]] for number in own], [counts[number] for number in own])
-    return replace(entry, elsewhere=values, places=_places(counts, own), ratio=ratio)
+    return replace(entry, elsewhere=values, places=places_of(counts, own), ratio=ratio)
 
 
 def _trend(settings: Any, crest: float) -> Trend | None:

@@ -23,7 +23,7 @@ FLOORS = {
     4.2: ("sampling",),  # chains follow the plan of their estimator
     4: ("quantities", "estimators", "stability"),
     3.5: ("random_fields.properties", "random_fields.comparison", "random_fields.principal_components"),
-    3.2: ("uncertainty",),
+    3.2: ("uncertainty", "random_fields.property"),
     3: ("mpm.scene", "mpm.solvers", "mpm.equilibrium", "random_fields.field", "random_fields.statistics"),
     2.5: (
         *("mpm.geometry", "mpm.energy", "mpm.initial_stress", "mpm.soils", "mpm.placing"),
@@ -45,7 +45,7 @@ FLOORS = {
         *("random_fields.conditioning", "random_fields.measurements"),
         *("random_fields.sounding", "random_fields.estimation", "random_fields.variance_function"),
         *("random_fields.layers", "random_fields.common", "random_fields.kinds"),
-        "random_fields.cross_correlation",
+        *("random_fields.cross_correlation", "random_fields.site"),
     ),
     1: ("mpm.state", "mpm.protocols", "random_fields.lattice", "study", "variables", "seeds"),
     0: ("kernel_tools", "columns", "ground"),

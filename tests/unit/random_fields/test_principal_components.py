@@ -10,7 +10,7 @@ from rfmpm.random_fields import principal_components as components
 from rfmpm.random_fields import properties
 from rfmpm.random_fields.methods import METHODS
 from rfmpm.random_fields.principal_components import linear_map, principal_components
-from rfmpm.random_fields.properties import Site
+from rfmpm.random_fields.site import Site
 
 CONFIGS = Path(__file__).parents[3] / "configs"
 ROUNDING = 1e-10  # identity: shares and products are of order one

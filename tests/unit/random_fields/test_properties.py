@@ -8,7 +8,8 @@ import pytest
 import rfmpm
 from rfmpm import realisation
 from rfmpm.random_fields import properties
-from rfmpm.random_fields.properties import Site
+from rfmpm.random_fields.property import Properties, Property
+from rfmpm.random_fields.site import Site
 
 CONFIG = Path(__file__).parents[3] / "configs" / "drained_cross_correlated.toml"
 PLAIN = {"random_field.cohesion.trend_kpa_per_m": None}
@@ -218,9 +219,7 @@ def test_the_same_xi_on_three_grids(study, value, per_cell):
             assert whole > 0.5 * len(larger)  # all but the squares that the face cuts
     else:
         prepared = realisation.prepare(one)
-        carried = properties.realise(properties.Properties({"cohesion": _all_of_the_lattice(prepared)}, None), xi)[
-            "cohesion"
-        ]
+        carried = properties.realise(Properties({"cohesion": _all_of_the_lattice(prepared)}, None), xi)["cohesion"]
         (part,) = prepared.fields["cohesion"].parts
         at_place = dict(zip(map(tuple, np.round(part.points, 6)), carried, strict=True))
         for values, square in ((coarse, 0.5), (medium, 0.25), (fine, 0.125)):  # one point per cell
@@ -231,4 +230,4 @@ def test_the_same_xi_on_three_grids(study, value, per_cell):
 def _all_of_the_lattice(prepared):
     """The property with every lattice point a material point."""
     entry = prepared.fields["cohesion"]
-    return properties.Property(entry.name, entry.parts, entry.count, None)
+    return Property(entry.name, entry.parts, entry.count, None)
