@@ -8,6 +8,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from rfmpm import failure_modes
+
 STATUS = {"ok": 0, "not_at_rest": 1, "diverged": 2, "left_grid": 3, "timeout": 4, "crashed": 5, "lost": 6, "refused": 7}
 FAILED = frozenset({"diverged", "left_grid", "timeout", "crashed", "lost", "refused"})  # their quantities are NaN
 STATUS_NAMES = {code: name for name, code in STATUS.items()}
@@ -126,6 +128,18 @@ VARIABLES = _table(
         "Connected components of the failed set with plastic strain below {study.quantities.block_plastic_strain:g} "
         "and an area of at least {study.quantities.block_minimum_area_m2:g} m2.",
         "int32",
+    ),
+    _quantity(
+        "failure_mode",
+        "",
+        "kind of failure",
+        "The first that fits. "
+        + "; ".join(f"{name}: {failure_modes.DEFINITIONS[name]}" for name in failure_modes.ORDER)
+        + f". Slip surface: the lower border of the largest connected part of the failed set before it moved; blocks "
+        f"as counted in block_count; {_FAILED_SET}.",
+        "int8",
+        flag_values=tuple(range(len(failure_modes.MODES))),
+        flag_meanings=" ".join(failure_modes.MODES),
     ),
     _quantity(
         "status",
