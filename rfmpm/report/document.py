@@ -89,6 +89,7 @@ def _page(dataset, study, numbers: Numbers, states: list[snapshots.Snapshot], dr
         unvarying=unvarying(rows),
         sample=sections.sample(numbers, study),
         modes=sections.mode_cards(numbers, thumbnails),
+        modes_not_found=sections.modes_not_found(numbers),
         slopes=slopes,
         drivers=driven,
         safety=sections.safety(numbers),

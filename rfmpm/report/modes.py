@@ -5,21 +5,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from rfmpm.estimators.intervals import clopper_pearson
-from rfmpm.quantities.failure_mode import MODES, UNKNOWN, failure_modes
+from rfmpm.failure_modes import MODES
 from rfmpm.report.members import flagged
 
 NAMES = {
     "no_failure": "No failure",
-    "single_slide": "Single slide",
-    "retrogressive": "Retrogressive",
-    "reaches_boundary": "Reaches the edge of the model",
+    "rotational": "Rotational slide",
+    "translational": "Translational slide",
+    "superficial": "Superficial slide",
+    "earthflow": "Earthflow",
+    "retrogressive": "Retrogressive slides",
+    "spread": "Spread",
 }
 MEANINGS = {
     "no_failure": "no soil moves further than the threshold of failure",
-    "single_slide": "one mass slides and stays in one piece, or flows apart altogether",
-    "retrogressive": "fails in stages: what fails after the first slide adds more than a tenth to it, or the failed "
-    "mass ends in two or more blocks that stayed whole",
-    "reaches_boundary": "the failure meets the back or the front of the model and might have gone on",
+    "rotational": "one mass turns on a curved slip surface",
+    "translational": "one mass goes down together on a plane, even if it breaks up on the way",
+    "superficial": "a thin skin goes down on a plane",
+    "earthflow": "nearly all that fails loses its shape",
+    "retrogressive": "one slide after the other, each behind the last",
+    "spread": "the ground breaks into ridges with subsided ground between them, over a nearly level band",
 }
 
 
@@ -29,6 +34,7 @@ class Mode:
 
     name: str
     count: int
+    at_edge: int  # of them, how many met an edge of the model and might have gone on
     value: float  # share of the completed realisations [-]
     lower: float  # of its probability, failed realisations counted both ways [-]
     upper: float
@@ -44,15 +50,13 @@ def modes(rows, confidence: float) -> list[Mode]:
         confidence: level of the Clopper-Pearson intervals, each for itself [-].
 
     Returns:
-        The four kinds in the order of MODES; none of a dataset that lacks what they are told from.
+        The kinds in the order of MODES; none of a dataset of a version that did not tell them.
     """
-    needed = ("failure_volume", "initial_failure_volume", "block_count")
-    if any(name not in rows for name in needed):
+    if "failure_mode" not in rows:
         return []
-    edge = flagged(rows, "run_out_censored", "retrogression_censored")
-    codes = failure_modes(*(rows[name].values for name in needed), edge)
+    codes, edge = rows["failure_mode"].values, flagged(rows, "run_out_censored", "retrogression_censored")
     run_out, index = rows["run_out"].values, rows["realisation"].values
-    unknown = int(np.sum(codes == UNKNOWN))
+    unknown = int(np.sum(np.isnan(codes.astype(float))))
     found = []
     for code, name in enumerate(MODES):
         members = np.flatnonzero(codes == code)
@@ -63,5 +67,6 @@ def modes(rows, confidence: float) -> list[Mode]:
         if members.size:
             at = members[np.argsort(run_out[members], kind="stable")[(members.size - 1) // 2]]
             typical, reached = int(index[at]), float(run_out[at])
-        found.append(Mode(name, members.size, share, float(lower), float(upper), typical, reached))
+        at_edge = int(edge[members].sum())
+        found.append(Mode(name, members.size, at_edge, share, float(lower), float(upper), typical, reached))
     return found

@@ -9,7 +9,7 @@ from rfmpm import estimators, planning
 from rfmpm.estimators.curves import Band
 from rfmpm.estimators.discretisation import Discretisation
 from rfmpm.estimators.intervals import clopper_pearson
-from rfmpm.quantities.failure_mode import MODES
+from rfmpm.failure_modes import MODES
 from rfmpm.report.answering import Answers
 from rfmpm.report.asked import Asked, asked
 from rfmpm.report.budget import Budget, Standing, budget, next_steps

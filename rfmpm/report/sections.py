@@ -101,19 +101,27 @@ def sample(numbers: Numbers, study) -> str:
 
 
 def mode_cards(numbers: Numbers, pictures: dict) -> list[dict]:
-    """Kinds of failure: name, share with its interval, meaning, thumbnail of a typical member (None: no member)."""
+    """Kinds of failure that occurred: name, share with its interval, meaning, thumbnail of a typical member."""
     total = sum(mode.count for mode in numbers.modes)
     return [
         {
             "name": kinds.NAMES[mode.name],
             "meaning": kinds.MEANINGS[mode.name],
             "count": f"{mode.count} of {total}",
+            "edge": f"{mode.at_edge} met an edge of the model and might have gone on" if mode.at_edge else "",
             "share": words.share(mode.value, mode.upper - mode.lower),
             "interval": _interval(mode, numbers) if numbers.is_random else "",
             "picture": pictures.get(mode.name),
         }
-        for mode in (numbers.modes if total else [])
+        for mode in numbers.modes
+        if mode.count
     ]
+
+
+def modes_not_found(numbers: Numbers) -> str:
+    """Name the kinds of failure that did not occur; nothing where no realisation completed."""
+    absent = [kinds.NAMES[mode.name].lower() for mode in numbers.modes if not mode.count]
+    return f"Not found: {', '.join(absent)}." if 0 < len(absent) < len(numbers.modes) else ""
 
 
 def _interval(mode: kinds.Mode, numbers: Numbers) -> str:

@@ -6,6 +6,7 @@ the file then records the value that was used.
 
 from typing import Any
 
+from rfmpm import failure_modes
 from rfmpm.variables.status import FAILED, STATUS
 from rfmpm.variables.variable import (
     Variable,
@@ -84,6 +85,18 @@ VARIABLES = table(
         "Connected components of the failed set with plastic strain below {study.quantities.block_plastic_strain:g} "
         "and an area of at least {study.quantities.block_minimum_area_m2:g} m2.",
         "int32",
+    ),
+    _quantity(
+        "failure_mode",
+        "",
+        "kind of failure",
+        "The first that fits. "
+        + "; ".join(f"{name}: {failure_modes.DEFINITIONS[name]}" for name in failure_modes.ORDER)
+        + f". Slip surface: the lower border of the largest connected part of the failed set before it moved; blocks "
+        f"as counted in block_count; {_FAILED_SET}.",
+        "int8",
+        flag_values=tuple(range(len(failure_modes.MODES))),
+        flag_meanings=" ".join(failure_modes.MODES),
     ),
     _quantity(
         "status",

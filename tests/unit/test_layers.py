@@ -48,7 +48,7 @@ FLOORS = {
         *("random_fields.cross_correlation", "random_fields.site"),
     ),
     1: ("mpm.state", "mpm.protocols", "random_fields.lattice", "study", "variables", "seeds"),
-    0: ("kernel_tools", "columns", "ground"),
+    0: ("kernel_tools", "columns", "ground", "failure_modes"),
 }
 FLOOR_OF = {name: floor for floor, names in FLOORS.items() for name in names}
 NAMESPACES = {"mpm", "random_fields"}  # rooms on several floors: their __init__ imports nothing and offers nothing

@@ -13,6 +13,7 @@ import pytest
 
 import rfmpm
 from rfmpm import realisation
+from rfmpm.failure_modes import MODES
 from rfmpm.quantities.state import label_cells
 
 SHORT_SLOPE = Path(__file__).parents[3] / "configs" / "papers" / "vardon_2017_short_slope.toml"
@@ -89,6 +90,14 @@ def test_residual_4_retrogresses_until_the_boundary_stops_it_and_leaves_at_least
     assert found["retrogression_censored"]
     assert found["block_count"] >= 3
     assert [bool(value) for value in over_residuals("retrogression_censored")] == [False, False, True]
+
+
+def test_kinds_of_failure_by_residual():
+    kinds = [MODES[run.quantities["failure_mode"]] for run in map(outcome, RESIDUALS)]
+    assert kinds[0] == "rotational"
+    # The paper has one circle and small failures at the back scarp; here the second slide is as large as the first.
+    assert kinds[1] == "retrogressive"
+    assert kinds[2] in ("retrogressive", "spread")  # ten cells over the height hardly resolve horsts
 
 
 def test_retrogression_grows_with_the_softening_modulus():

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from rfmpm.failure_modes import MODES
 from rfmpm.mpm.scene import domain_size, outline, toe_x
 from rfmpm.results import dataset
 from rfmpm.study import Study, load_study
@@ -62,6 +63,7 @@ def make_rows(study, n=64, failed=(), censored=(), not_at_rest=(), still=(), see
             "initial_failure_volume": 2.0 * run_out,
             "influence_distance": 2.1 * run_out + 5.0,
             "block_count": int(run_out // 3),
+            "failure_mode": min(int(np.ceil(run_out / 3)), len(MODES) - 1),
             "status": STATUS["not_at_rest" if index in not_at_rest else "ok"],
             "status_reason": "kinetic energy still 0.4 % of its peak" if index in not_at_rest else "",
             "time_at_rest": np.nan if index in not_at_rest else 12.0,

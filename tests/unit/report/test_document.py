@@ -12,6 +12,7 @@ from PIL import Image
 from synthetic import make_ensemble, make_points, make_study
 
 from rfmpm.report import write
+from rfmpm.report.modes import NAMES
 from rfmpm.results import write_dataset
 
 CASES = {
@@ -92,12 +93,12 @@ def test_every_kind_of_campaign_gives_a_sound_page(tmp_path, name):
     simulate, _ = campaign(tmp_path, make_study(), **CASES[name])
     path = write(tmp_path, simulate=simulate)
     assert path == tmp_path / "report.html"
-    images = {"one": 4, "one failed": 0, "all failed": 0, "no failure": 7, "all censored": 10}
+    images = {"one": 4, "one failed": 0, "all failed": 0, "no failure": 7, "all censored": 11}
     check_page(path, images[name])
 
 
 def test_page_is_self_contained_and_every_picture_is_described(ordinary):
-    check_page(ordinary / "report.html", images=12)
+    check_page(ordinary / "report.html", images=14)
 
 
 def test_page_and_json_say_the_same(ordinary):
@@ -110,6 +111,11 @@ def test_page_and_json_say_the_same(ordinary):
     assert record["headline"] in text.replace("\N{NO-BREAK SPACE}", " ")
     assert record["question"] == "How likely is the soil to travel more than 5 m beyond the toe?"
     assert sum(mode["count"] for mode in record["modes"]) == record["completed"] == 23
+    assert sum(mode["at_edge"] for mode in record["modes"]) > 0
+    assert "met an edge of the model and might have gone on" in text
+    assert (
+        f"Not found: {', '.join(NAMES[mode['name']].lower() for mode in record['modes'] if not mode['count'])}." in text
+    )
     assert record["reasons"] == [
         {"realisation": 5, "status": "diverged", "reason": "energy grew at step 4005"},
         {"realisation": 9, "status": "not_at_rest", "reason": "kinetic energy still 0.4 % of its peak"},

@@ -18,7 +18,7 @@ def finished_row(index, **changes):
     row = {name: 0.1 * index + place for place, name in enumerate(VARIABLES)}
     row.update(
         realisation=index, level=0, run_out_censored=False, retrogression_censored=True, block_count=index,
-        status=STATUS["ok"], status_reason="", step_count=1000 + index, time_at_rest=np.nan,
+        failure_mode=index, status=STATUS["ok"], status_reason="", step_count=1000 + index, time_at_rest=np.nan,
         final_surface=np.linspace(4.0, 0.0, BINS) + index,
     )  # fmt: skip
     return row | changes
