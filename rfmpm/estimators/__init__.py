@@ -3,10 +3,12 @@
 from rfmpm.estimators.curves import Band, exceedance_curve, running_exceedance, running_mean
 from rfmpm.estimators.monte_carlo import Estimate, contiguous_prefix, exceedance, mean, missing, quantile
 from rfmpm.estimators.multilevel import ControlVariate, Multilevel
+from rfmpm.estimators.pairs import exceedance_difference, mean_difference
 from rfmpm.estimators.plain import MonteCarlo
 from rfmpm.estimators.question import Exceedances, Question, Value
 from rfmpm.estimators.replicated import Replicated
 from rfmpm.estimators.rows import Rows
+from rfmpm.estimators.spread import standard_deviation
 from rfmpm.estimators.stratified import Stratified
 from rfmpm.estimators.subset_simulation import SubsetSimulation
 from rfmpm.estimators.two_phase import TwoPhase
@@ -39,9 +41,12 @@ __all__ = [
     "contiguous_prefix",
     "exceedance",
     "exceedance_curve",
+    "exceedance_difference",
     "mean",
+    "mean_difference",
     "missing",
     "quantile",
     "running_exceedance",
     "running_mean",
+    "standard_deviation",
 ]
