@@ -74,7 +74,7 @@ def run_in_rounds(
         as `ensemble.run`.
     """
     total = study.study.realisations
-    done = min(_completed(folder / cell.name) for cell in cells(study, grid))
+    done = min(_finished(folder / cell.name) for cell in cells(study, grid))
     first = min(total, (done // block + 1) * block)
     for number in [*range(first, total, block), total]:
         tell(f"{number} realisations of each combination")
@@ -84,10 +84,9 @@ def run_in_rounds(
             yield rows
 
 
-def _completed(folder: Path) -> int:
-    """How many realisations the last complete campaign in a folder had; 0 where there is none."""
+def _finished(folder: Path) -> int:
+    """How many realisations the campaign in a folder last had; 0 where there is none."""
     try:
-        status = campaign_status.read(folder)
+        return int(campaign_status.read(folder)["done"])
     except FileNotFoundError:
         return 0
-    return int(status["total"]) if status["state"] == campaign_status.COMPLETE else 0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rfmpm import load_study
+from rfmpm import campaign_status, load_study
 from rfmpm.benchmark.variability import campaigns
 from rfmpm.benchmark.variability.campaigns import Grid, cells, run_in_rounds
 from rfmpm.benchmark.variability.contrasts import against, against_uniform, correlations, mean_of, probability_beyond
@@ -166,6 +166,24 @@ def test_rounds_keep_combinations_equal_and_go_on_where_they_were_stopped(tmp_pa
     (last,) = run_in_rounds(study, grid, tmp_path, 2, 1, told.append)
     for position, rows in first.items():  # not run again
         np.testing.assert_array_equal(last[position]["wall_time"].values[:2], rows["wall_time"].values)
+
+
+def test_a_campaign_stopped_on_its_way_does_not_begin_the_rounds_again(tmp_path, monkeypatch):
+    study, grid = load_study(COARSE).with_changes({"study.realisations": 9}), Grid((0.1,), (2.0,), (1.0, 3.0))
+    for cell, (state, done) in zip(cells(study, grid), [("complete", 6), ("stopped", 5)], strict=True):
+        (tmp_path / cell.name).mkdir()
+        campaign_status.write(
+            tmp_path / cell.name, {"state": state, "done": done, "total": 6, "updated": campaign_status.now()}
+        )
+    asked = []
+
+    def asked_for(combinations, *others):
+        asked.append([cell.study.study.realisations for cell in combinations])
+        return ((cell, "rows") for cell in combinations)
+
+    monkeypatch.setattr(campaigns, "run_cells", asked_for)
+    assert len(list(run_in_rounds(study, grid, tmp_path, 3, 1, print))) == 2
+    assert asked == [[6, 6], [9, 9]]
 
 
 @pytest.mark.slow
