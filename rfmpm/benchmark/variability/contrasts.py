@@ -82,6 +82,53 @@ def against_uniform(found: "xr.Dataset", quantity: str) -> list[Contrast]:
     return contrasts
 
 
+def main_effects(found: "xr.Dataset", outcome: Callable[["xr.Dataset"], np.ndarray]) -> list[Contrast]:
+    """Compare each value along each dimension with the first one, on average over all that the others may be.
+
+    The average is taken realisation by realisation, so that these, which are independent, give the interval.
+
+    Args:
+        found: dataset of the study.
+        outcome: number of every realisation of a cell, shape (n,); NaN where it failed.
+
+    Returns:
+        One difference for each value but the first of each dimension; both its places name that dimension alone.
+    """
+    chosen = [(name, float(value)) for name in Grid._fields for value in found[name].values[1:]]
+    family, contrasts = 1.0 - (1.0 - CONFIDENCE) / len(chosen), []
+    for name, value in chosen:
+        first = float(found[name][0])
+        here, there = (
+            np.mean([outcome(cell) for cell in each_cell(found.sel({name: [along]}))], axis=0)
+            for along in (value, first)
+        )
+        contrasts.append(
+            Contrast(
+                {name: value},
+                {name: first},
+                mean_difference(here, there, CONFIDENCE),
+                _excludes_0(mean_difference(here, there, family)),
+            )
+        )
+    return contrasts
+
+
+def effects(found: "xr.Dataset", limit: float) -> dict[str, list[Contrast]]:
+    """Main effects on the mean of each quantity and on P(run-out > limit), by what they are of."""
+    return {
+        "mean run-out [m]": main_effects(found, lambda cell: outcomes(cell, "run_out")[0]),
+        f"P(run-out > {limit:g} m)": main_effects(found, lambda cell: exceeds(cell, "run_out", limit)),
+        "mean retrogression [m]": main_effects(found, lambda cell: outcomes(cell, "retrogression_distance")[0]),
+        "mean volume [m³/m]": main_effects(found, lambda cell: outcomes(cell, "failure_volume")[0]),
+    }
+
+
+def exceeds(cell: "xr.Dataset", quantity: str, limit: float) -> np.ndarray:
+    """1 where a quantity exceeds a limit, 0 where it does not, NaN where it failed; shape (n,)."""
+    values, censored = outcomes(cell, quantity)
+    return np.where(np.isnan(values), np.nan, (values > limit) | censored)
+
+
 def _excludes_0(estimate: Estimate) -> bool:
     return estimate.lower > 0.0 or estimate.upper < 0.0
 

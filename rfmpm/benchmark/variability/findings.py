@@ -9,6 +9,7 @@ from rfmpm.benchmark.variability.contrasts import (
     Contrast,
     against,
     against_uniform,
+    effects,
     mean_of,
     probability_beyond,
 )
@@ -18,6 +19,7 @@ from rfmpm.estimators import Estimate, exceedance
 if TYPE_CHECKING:
     import xarray as xr
 
+WORDS = {"coefficient_of_variation": "variation", "vertical_scale": "vertical scale [m]", "scale_ratio": "ratio"}
 SETTLED = 5  # slopes of the rarer kind from which the interval of a mean or a standard deviation is trusted
 
 
@@ -32,6 +34,7 @@ def findings(found: "xr.Dataset", limit: float) -> Iterator[str]:
         Sentences in Markdown.
     """
     yield _uniform(found)
+    yield _on_average(found, limit)
     yield _mean(found)
     yield _two_kinds(found)
     yield _spread(found)
@@ -54,6 +57,8 @@ def verdict(contrasts: Sequence[Contrast], more: str = "larger", less: str = "sm
     up = sum(each.is_secure and each.estimate.value > 0.0 for each in contrasts)
     down = sum(each.is_secure and each.estimate.value < 0.0 for each in contrasts)
     total = len(contrasts)
+    if up + down == 0:
+        return f"none of {total} secure"
     return f"of {total}, {up} securely {more}, {down} securely {less}, {total - up - down} undecided"
 
 
@@ -81,6 +86,26 @@ def _uniform(found: "xr.Dataset") -> str:
     )
 
 
+def _on_average(found: "xr.Dataset", limit: float) -> str:
+    columns = effects(found, limit)
+    parts = [f"{title}: {_secure(contrasts)}" for title, contrasts in columns.items()]
+    return (
+        "**What is secure on average over the other two dimensions**, against the smallest variation, the smallest "
+        f"vertical scale and a ratio of {float(found['scale_ratio'][0]):g} (all effects and intervals are in the table "
+        f"below): {'; '.join(parts)}."
+    )
+
+
+def _secure(contrasts: Sequence[Contrast]) -> str:
+    named = [
+        f"{WORDS[name].removesuffix(' [m]')} {value:g} {each.estimate.value:+.2f}"
+        for each in contrasts
+        for name, value in each.here.items()
+        if each.is_secure
+    ]
+    return ", ".join(named) or "none"
+
+
 def _mean(found: "xr.Dataset") -> str:
     contrasts = against_uniform(found, "run_out")
     differences = [each.estimate.value for each in contrasts]
@@ -95,7 +120,7 @@ def _mean(found: "xr.Dataset") -> str:
 
 
 def _over_variation(found: "xr.Dataset") -> list[Contrast]:
-    smallest = float(found["coefficient_of_variation"].min())
+    smallest = float(found["coefficient_of_variation"][0])
     return against(found, "coefficient_of_variation", smallest, mean_of("run_out"))
 
 
@@ -155,6 +180,7 @@ def _cautious(found: "xr.Dataset") -> str:
     cautious = found["run_out_uniform"].sel(strength="cautious")
     strengths = found["uniform_cohesion"].sel(strength="cautious").values
     above = cautious - found["run_out_characteristic"]
+    further = int((found["run_out"] > cautious).sum())
     is_known = np.isfinite(found["run_out_characteristic_upper"])
     safe = int(((cautious > found["run_out_characteristic_upper"]) & is_known).sum())
     return (
@@ -162,7 +188,7 @@ def _cautious(found: "xr.Dataset") -> str:
         f"({_listed(strengths)} kPa at a variation of {_listed(found['coefficient_of_variation'].values, '{:g}')}) the "
         f"uniform slope runs {_listed(cautious.values)} m. That is {span(above.values.ravel(), 'm', signed=True)} "
         f"against the characteristic run-out, and beyond the upper end of its 95 % interval in {safe} of {above.size} "
-        f"combinations{_unbounded(is_known)}."
+        f"combinations{_unbounded(is_known)}; {further} of the {found['run_out'].size} realisations run further."
     )
 
 
@@ -176,7 +202,7 @@ def _unbounded(is_known: "xr.DataArray") -> str:
 
 
 def _anisotropy(found: "xr.Dataset", limit: float) -> str:
-    isotropic = float(found["scale_ratio"].min())
+    isotropic = float(found["scale_ratio"][0])
     run_out, volume = (against(found, "scale_ratio", isotropic, mean_of(q)) for q in ("run_out", "failure_volume"))
     fails = against(found, "scale_ratio", isotropic, probability_beyond("run_out", limit))
     spread = found["run_out_standard_deviation"]
@@ -208,7 +234,7 @@ def _estimates(contrasts: Sequence[Contrast]) -> list[float]:
 
 
 def _vertical_scale(found: "xr.Dataset", limit: float) -> str:
-    shortest = float(found["vertical_scale"].min())
+    shortest = float(found["vertical_scale"][0])
     run_out = against(found, "vertical_scale", shortest, mean_of("run_out"))
     fails = against(found, "vertical_scale", shortest, probability_beyond("run_out", limit))
     return (
@@ -230,5 +256,6 @@ def _undecided(found: "xr.Dataset", limit: float) -> str:
         f"of P(run-out > {limit:g} m) up to {float(width.max()):.2f}: smaller effects are not seen. Where fewer than "
         f"{SETTLED} slopes stand (or fail), in {few} combinations, mean and standard deviation hang on these few; "
         f"where none does, in {none}, an interval of mean or standard deviation knows nothing of the rare ones. "
-        f"Probabilities much below 1/{n} are beyond this study."
+        f"Probabilities much below 1/{n} are beyond this study. What the cells err is in no interval "
+        "([slope_error.md](slope_error.md))."
     )

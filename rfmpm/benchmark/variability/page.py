@@ -7,10 +7,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rfmpm.benchmark.variability.campaigns import Grid
-from rfmpm.benchmark.variability.contrasts import Contrast, against, correlations, mean_of, probability_beyond
+from rfmpm.benchmark.variability.contrasts import (
+    Contrast,
+    against,
+    correlations,
+    effects,
+    mean_of,
+    probability_beyond,
+)
 from rfmpm.benchmark.variability.figures import draw_exceedance, draw_maps, draw_over_variation
-from rfmpm.benchmark.variability.findings import crest_lost, findings, standing
+from rfmpm.benchmark.variability.findings import WORDS, crest_lost, findings, standing
 from rfmpm.benchmark.variability.summary import QUANTITIES, each_cell
+from rfmpm.benchmark.variability.text import PAGE
 from rfmpm.report import words
 
 if TYPE_CHECKING:
@@ -18,6 +26,7 @@ if TYPE_CHECKING:
 
 NAME = "random_field_study"
 PLACE = "variation | vertical scale [m] | ratio"
+PLACES = (2, 2, 2, 1)  # decimal places of the columns of differences
 
 
 def write_page(found: "xr.Dataset", study, folder: Path) -> Path:
@@ -71,6 +80,7 @@ def _text(found: "xr.Dataset", study, limit: float) -> str:
         findings="\n".join(f"- {finding}" for finding in findings(found, limit)),
         run_out="\n".join(_run_out(found, limit)),
         others="\n".join(_others(found)),
+        effects="\n".join(_effects(found, limit)),
         anisotropy="\n".join(_contrasts(found, "scale_ratio", limit)),
         variation="\n".join(_contrasts(found, "coefficient_of_variation", limit)),
         scale="\n".join(_contrasts(found, "vertical_scale", limit)),
@@ -133,90 +143,21 @@ def _contrasts(found: "xr.Dataset", dimension: str, limit: float) -> Iterator[st
     compared += [mean_of("retrogression_distance"), mean_of("failure_volume")]
     families = [against(found, dimension, float(found[dimension][0]), compare) for compare in compared]
     for contrasts in zip(*families, strict=True):
-        entries = [_difference(contrast, places) for contrast, places in zip(contrasts, (2, 2, 2, 1), strict=True)]
+        entries = [_difference(contrast, places) for contrast, places in zip(contrasts, PLACES, strict=True)]
         yield _row(list(contrasts[0].here.values()), *entries)
+
+
+def _effects(found: "xr.Dataset", limit: float) -> Iterator[str]:
+    columns = effects(found, limit)
+    yield f"| | {' | '.join(columns)} |"
+    yield "|---" * (len(columns) + 1) + "|"
+    for contrasts in zip(*columns.values(), strict=True):
+        ((name, value),), (first,) = contrasts[0].here.items(), contrasts[0].there.values()
+        entries = [_difference(contrast, places) for contrast, places in zip(contrasts, PLACES, strict=True)]
+        yield f"| {WORDS[name]} {value:g} against {first:g} | {' | '.join(entries)} |"
 
 
 def _difference(contrast: Contrast, places: int) -> str:
     one = contrast.estimate
     text = f"{one.value:+.{places}f} ({one.lower:+.{places}f} to {one.upper:+.{places}f})"
     return f"**{text}**" if contrast.is_secure else text
-
-
-PAGE = """\
-# The short slope over variation, vertical scale and anisotropy of its strength
-
-Made by `{command}`, which continues where it was stopped; rows and summary are in
-[{name}.nc]({name}.nc).
-
-Slope, softening and cells are those of the main study (`configs/{name}.toml`): 5 m high, 45 degrees, cells of
-{cell:g} m. Peak cohesion is lognormal with a mean of {mean:g} kPa, the residual {residual:g} / {mean:g} of the peak at
-every point, the correlation separable Markov. Varied are the coefficient of variation ({variations}), the vertical
-scale of fluctuation ({scales} m) and the ratio of the horizontal to the vertical scale ({ratios}).
-
-Size: {combinations} combinations with {each} realisations each, {total} in all, of which {failed} failed. Plain Monte
-Carlo. {hours} of one core, {per:.2f} s a realisation on a shared machine (15-minute load {load}).
-
-How to read it:
-
-- Intervals are 95 %: Student's t for means, Bonett's for standard deviations, order statistics for quantiles, Clopper
-  and Pearson's for probabilities.
-- Realisation i has the same random numbers in every combination, so differences between combinations are taken pair by
-  pair (Student's t; Agresti and Min for probabilities). The run-outs of such pairs, isotropic against not, correlate by
-  {correlation} (median).
-- A difference is called secure, and is bold in the tables, if 0 lies outside of an interval that allows for all
-  differences of its column (Bonferroni: less than one false alarm in twenty such columns).
-- The crest is {crest:g} m wide. In {lost} of the realisations the failure takes all of it: retrogression and volume are
-  lower bounds there. They count as exceeding every threshold; means and standard deviations take them at their value.
-  The far wall bounded the run-out of {far}.
-
-## What it means for a designer
-
-{findings}
-
-These hold for this slope, which fails with the mean strength, and for this softening.
-
-## Mean and spread
-
-![Mean of the three quantities over the coefficient of variation]({name}_mean.png)
-
-![Standard deviation of the three quantities over the coefficient of variation]({name}_spread.png)
-
-## Probability of more
-
-![Exceedance curves of the run-out]({name}_run_out.png)
-
-![Exceedance curves of the retrogression]({name}_retrogression_distance.png)
-
-![Exceedance curves of the failure volume]({name}_failure_volume.png)
-
-The curves of retrogression and volume end at the share of slopes that lose the whole crest.
-
-## Failure and characteristic run-out at a glance
-
-![P(run-out > {limit:g} m) and characteristic run-out of every combination]({name}_maps.png)
-
-## Run-out in numbers
-
-{run_out}
-
-Stand: nothing moves beyond the toe.
-
-## Retrogression and volume in numbers
-
-{others}
-
-## Differences
-
-### Anisotropy: against a ratio of {first_scale_ratio} at the same variation and vertical scale
-
-{anisotropy}
-
-### Variation: against {first_coefficient_of_variation} at the same scales
-
-{variation}
-
-### Vertical scale: against {first_vertical_scale} m at the same variation and ratio
-
-{scale}
-"""

@@ -9,7 +9,15 @@ import xarray as xr
 from rfmpm import campaign_status, load_study
 from rfmpm.benchmark.variability import campaigns
 from rfmpm.benchmark.variability.campaigns import Grid, cells, run_in_rounds
-from rfmpm.benchmark.variability.contrasts import against, against_uniform, correlations, mean_of, probability_beyond
+from rfmpm.benchmark.variability.contrasts import (
+    against,
+    against_uniform,
+    correlations,
+    exceeds,
+    main_effects,
+    mean_of,
+    probability_beyond,
+)
 from rfmpm.benchmark.variability.document import DATASET, run
 from rfmpm.benchmark.variability.findings import crest_lost, findings, span, standing, verdict
 from rfmpm.benchmark.variability.summary import KEPT, QUANTITIES, each_cell, summarise
@@ -119,6 +127,17 @@ def test_a_difference_that_chance_does_not_explain_is_secure_and_no_other(toy):
     assert next(correlations(toy, "scale_ratio", 1.0, "run_out")) > 0.99
 
 
+def test_main_effects_are_averages_over_all_others(toy):
+    variation, scale, ratio = main_effects(toy, lambda cell: exceeds(cell, "run_out", 5.0))
+    assert (variation.here, variation.there) == ({"coefficient_of_variation": 0.5}, {"coefficient_of_variation": 0.1})
+    assert (variation.is_secure, scale.is_secure, ratio.is_secure) == (True, False, False)
+    assert variation.estimate.value == pytest.approx(-10 / 39, rel=1e-12)  # the failed one is left out
+    assert (scale.estimate.value, variation.estimate.n) == (0.0, N - 1)
+    half = main_effects(toy, lambda cell: cell["run_out"].values)[2]  # a metre for one of two variations
+    assert half.is_secure
+    assert half.estimate.lower < 0.5 < half.estimate.upper
+
+
 def test_against_the_uniform_slope(toy):
     securely = [each.is_secure for each in against_uniform(toy, "run_out")]
     assert securely == [False, False] * 2 + [True, True] * 2  # the metre that pairs are sure of is lost in chance here
@@ -138,7 +157,7 @@ def test_a_family_is_allowed_for():
 
 def test_every_finding_is_a_sentence(toy):
     found = list(findings(toy, 5.0))
-    assert len(found) == 9
+    assert len(found) == 10
     assert all(text.startswith("**") and text.endswith(".") and "nan" not in text for text in found)
     assert span([1.04, 1.01], "m") == "1.0 m"
     assert span([-0.5, 2.0], signed=True) == "-0.5 to +2.0"
