@@ -33,10 +33,9 @@ class Stage(NamedTuple):
 class TwoPhase(Staged):
     """Double sampling: of the coarse runs, those of uncertain outcome are repeated on the study's own cells.
 
-    The first indices run on both cell sizes. They show at which coarse values the outcome on the own cells scatters
-    most, which parts the coarse runs into up to three strata; later stages choose from each stratum in proportion to
-    its share and its scatter (Neyman's allocation), in the order of the indices. Features of the field with known
-    means reduce the scatter of the coarse mean.
+    The first indices run on both cell sizes. Gaps between the first coarse values part all coarse runs into up to three
+    strata; later stages take as many from each of them, in the order of the indices, so that the rare outcomes are met
+    as often as the common ones. Features of the field with known means reduce the scatter of the coarse mean.
 
     Rows on the own cells are no fair sample but for the first indices.
     """
