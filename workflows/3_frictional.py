@@ -1,4 +1,4 @@
-"""Frictional soil against what was published: aluminium bars, granular columns, a slope with little cohesion.
+"""Frictional soil against what was published: aluminium bars, granular columns.
 
     python workflows/3_frictional.py
 

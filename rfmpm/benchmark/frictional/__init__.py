@@ -1,1 +1,1 @@
-"""Frictional soil against what was published: a pile of bars, granular columns, a slope with little cohesion."""
+"""Frictional soil against what was published: a pile of bars, granular columns."""

@@ -1,15 +1,12 @@
-"""Planar granular columns: two published laws of their run-out, and ours; and the column of 2268 points."""
+"""Planar granular columns: two published laws of their run-out, and ours."""
 
 from math import inf
 
 from rfmpm.benchmark.frictional.cases import collapse
-from rfmpm.outcome import Outcome
 
-NAME, STAGED = "lube_2005_columns", "vardon_2016_column_collapse"
+NAME = "lube_2005_columns"
 HALF_WIDTH = 0.1  # [m]
 ASPECTS = (0.5, 1.0, 2.0, 3.0, 5.0, 8.0)
-TIMES = (0.25, 0.375, 0.5)  # [s]: stages shown in the lecture
-EXPERIMENT = (0.30, 0.42, 0.55)  # [s]: when the experiment looked the same
 ROOM = 2.4  # foreland over the run-out of the law
 
 
@@ -62,8 +59,3 @@ def run_out(aspect: float, cells: int, friction: float | None = None) -> float:
     if outcome.status not in ("ok", "not_at_rest"):
         raise RuntimeError(f"column of aspect ratio {aspect:g}: {outcome.reason}")
     return inf if outcome.quantities["run_out_censored"] else outcome.quantities["run_out"] / HALF_WIDTH
-
-
-def stage(time: float) -> Outcome:
-    """Run the column of 2268 points to a time [s]."""
-    return collapse(STAGED, {"time.end_s": time})

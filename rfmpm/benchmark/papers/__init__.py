@@ -3,9 +3,19 @@
 A new case is a file here and a line in CASES.
 """
 
-from rfmpm.benchmark.papers import short_slope_five_runs
+from rfmpm.benchmark.papers import (
+    column_collapse,
+    column_compression,
+    short_slope_five_runs,
+    stress_oscillation,
+    toro_rojas_slope,
+)
 from rfmpm.benchmark.papers.case import Case
 
 CASES: dict[str, Case] = {
     "short_slope_five_runs": short_slope_five_runs.CASE,
+    "column_compression": column_compression.CASE,
+    "stress_oscillation": stress_oscillation.CASE,
+    "column_collapse": column_collapse.CASE,
+    "toro_rojas_slope": toro_rojas_slope.CASE,
 }

@@ -1,6 +1,6 @@
 """What a published simulation is made of here: what it says, what is run, how agreement is judged."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -50,7 +50,7 @@ class Case:
     reproduce: Callable[[bool], Reproduction]  # True: on coarse cells, for a quick look
 
 
-def study(name: str, changes: dict[str, Any] | None = None) -> Study:
+def study(name: str, changes: Mapping[str, Any] | None = None) -> Study:
     """Load a study of `configs/papers` with some keys changed."""
     return load_study(STUDIES / f"{name}.toml").with_changes(changes or {})
 

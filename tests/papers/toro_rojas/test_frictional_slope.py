@@ -1,6 +1,6 @@
 """The slope of Toro Rojas et al., on coarse cells: what the study found comes out in order and kind.
 
-Finer cells, histories and run times are in reports/frictional.md.
+Finer cells, histories and run times are in reports/papers/toro_rojas_slope.md.
 """
 
 from functools import cache
@@ -8,11 +8,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from rfmpm.benchmark.frictional import slope
-from rfmpm.benchmark.frictional.cases import CELL
-from rfmpm.benchmark.frictional.slope import COHESION
-
-STIFFNESS = "material.0.youngs_modulus_kpa"
+from rfmpm.benchmark.papers import toro_rojas_runs as slope
+from rfmpm.benchmark.papers.toro_rojas_runs import CELL, COHESION, STIFFNESS
 
 
 @cache

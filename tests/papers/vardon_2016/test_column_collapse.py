@@ -5,28 +5,36 @@ No numbers are published, and the size is chosen, so that what is seen in any co
 
 from functools import cache
 
+import numpy as np
 import pytest
 
-from rfmpm.benchmark.frictional import columns
+from rfmpm.benchmark.papers.column_collapse import HALF_WIDTH, HEIGHT, TIMES, Course, stage
 
-HEIGHT, HALF_WIDTH, GRAVITY = 0.63, 0.09, 9.81
+GRAVITY = 9.81
 
 
 @cache
-def stage(time):
-    return columns.stage(time)
+def at(time):
+    return stage(time)
 
 
-@pytest.mark.parametrize("time", columns.TIMES)
+@pytest.mark.parametrize("time", TIMES)
 def test_column_has_its_points_and_is_still_moving(time):
-    assert len(stage(time).points["x"]) == 2268
-    assert stage(time).status == "not_at_rest"
+    assert len(at(time).points["x"]) == 2268
+    assert at(time).status == "not_at_rest"
 
 
 def test_front_advances_and_top_sinks_from_stage_to_stage_no_faster_than_free_fall():
-    fronts = [stage(time).points["x"].max() for time in columns.TIMES]
-    tops = [stage(time).points["y"].max() for time in columns.TIMES]
+    fronts = [at(time).points["x"].max() for time in TIMES]
+    tops = [at(time).points["y"].max() for time in TIMES]
     assert HALF_WIDTH < fronts[0] < fronts[1] < fronts[2]
     assert HEIGHT > tops[0] > tops[1] > tops[2]
     assert tops[0] > HEIGHT - 0.5 * GRAVITY * 0.25**2 - 0.01  # a cell
     assert tops[2] < 0.5 * HEIGHT  # it takes about twice the time of free fall (Lube et al. 2005)
+
+
+def test_course_says_when_the_front_comes_to_a_place():
+    course = Course(np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 3.0]), np.array([3.0, 2.0, 2.0]))
+    assert course.at(1.5) == (2.0, 2.0)
+    assert course.reaches(2.0) == 1.5
+    assert course.reaches(3.1) == np.inf
