@@ -163,10 +163,9 @@ HEAD = (
 WHY = """The initial failure is a band from the toe to the crest as in the slope without variation, but not the same
 arc: it bends through weak soil (blue in the field) and around strong soil, and what it passes through is on the average
 an eighth weaker than the body. It is complete sooner, and where two weak ways compete there are two bands. The first
-block then leaves a face that stands alone, and further bands cut the crest behind, often up to the boundary; they break
-what slides into more and smaller pieces than without variation. With the larger scale a weak or a strong zone is as
-large as a block, so that realisations differ more, in how far they run out and in how far back they fail: some end
-with their first block where the soil behind it is strong."""
+block then leaves a face that stands alone, and further bands cut the crest behind, often up to the boundary. With the
+larger scale a weak or a strong zone is as large as a block, so that realisations differ more, in how far they run out
+and in how far back they fail: some end with their first block."""
 FEWER = "in the others the soil behind the first block is strong enough to stand, or it all goes at once."
 
 CASE = Case(
