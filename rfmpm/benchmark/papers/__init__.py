@@ -7,6 +7,8 @@ from rfmpm.benchmark.papers import (
     column_collapse,
     column_compression,
     short_slope_five_runs,
+    short_slope_random,
+    short_slope_stress_regions,
     stress_oscillation,
     toro_rojas_slope,
 )
@@ -14,6 +16,8 @@ from rfmpm.benchmark.papers.case import Case
 
 CASES: dict[str, Case] = {
     "short_slope_five_runs": short_slope_five_runs.CASE,
+    "short_slope_stress_regions": short_slope_stress_regions.CASE,
+    "short_slope_random": short_slope_random.CASE,
     "column_compression": column_compression.CASE,
     "stress_oscillation": stress_oscillation.CASE,
     "column_collapse": column_collapse.CASE,

@@ -1,100 +1,180 @@
 """The five homogeneous runs of the short slope: residual cohesion and softening modulus."""
 
-from itertools import pairwise
+from math import atan2, degrees
 from pathlib import Path
 
+import numpy as np
+
 from rfmpm.benchmark.markdown import table
-from rfmpm.benchmark.papers.case import Case, Figure, Finding, Reproduction, simulate, study
+from rfmpm.benchmark.papers import short_slope_crests as crests
+from rfmpm.benchmark.papers.case import Case, Figure, Finding, Reproduction
+from rfmpm.benchmark.papers.short_slope import COARSE, FINER, MODULUS, RESIDUAL, STUDY, Run, run
 from rfmpm.mpm.scene import outline
-from rfmpm.outcome import Outcome
 from rfmpm.report.slope_figures import WIDTH, draw_panel, panel_height, strain_limit, view
 from rfmpm.report.style import drawing, new_figure, save
 
-STUDY = "vardon_2017_short_slope"
 RESIDUALS, MODULI = (12.0, 8.0, 4.0), (25.0, 50.0, 75.0)  # [kPa]
 RUNS = [*((residual, 50.0) for residual in RESIDUALS), (4.0, 25.0), (4.0, 75.0)]
-COARSE = 0.5  # [m]
-Runs = dict[tuple[float, float], Outcome]  # by residual cohesion and softening modulus [kPa]
+FINER_RUNS = [(8.0, 50.0), *((4.0, modulus) for modulus in MODULI)]
+FIRST_SLIDE = 2.5  # [s]: its band is complete, and no other one behind it
+RIDGE = 0.05  # of the height, a cell of the paper: how far a ridge stands out of the troughs beside it
+Runs = dict[tuple[float, float], Run]  # by residual cohesion and softening modulus [kPa]
 
 
 def reproduce(coarse: bool) -> Reproduction:
-    """Run the five slopes and compare their order."""
-    cell = {"discretisation.cell_m": COARSE} if coarse else {}
-    runs = {
-        (residual, modulus): simulate(
-            study(
-                STUDY,
-                cell | {"material.0.residual_cohesion_kpa": residual, "material.0.softening_modulus_kpa": modulus},
-            )
-        )
-        for residual, modulus in RUNS
-    }
-    return Reproduction(_findings(runs), [Figure(CAPTION, lambda path: _draw(runs, path))], _numbers(runs))
+    """Run the five slopes, and what tells why they are as they are: finer cells, longer crests."""
+    cells = COARSE if coarse else {}
+    runs = {key: _run(key, cells) for key in RUNS}
+    finer = runs if coarse else {key: _run(key, FINER) for key in FINER_RUNS}
+    stronger = run(cells | {RESIDUAL: 8.0, "material.0.cohesion_kpa": 20.2})
+    reaches = crests.reaches(MODULI, cells, crests.FEW if coarse else crests.CRESTS)
+    half_step = crests.reaches(MODULI, cells | {"time.step_fraction": 0.25}, [crests.OF_PAPER])
+    figures = [
+        Figure(CAPTION, lambda path: _draw(runs, path)),
+        Figure(crests.CAPTION, lambda path: crests.draw(reaches, path)),
+    ]
+    return Reproduction(_findings(runs, finer, stronger, reaches, half_step), figures, _text(runs, finer, reaches))
 
 
-def _findings(runs: Runs) -> list[Finding]:
-    by_residual = [runs[residual, 50.0].quantities for residual in RESIDUALS]
-    stiff, middle, soft = by_residual
-    lost = [runs[4.0, modulus].quantities["retrogression_distance"] for modulus in MODULI]
-    run_outs = [found["run_out"] for found in by_residual]
-    grows = all(shorter <= longer for shorter, longer in pairwise(lost))
+def _run(key: tuple[float, float], cells: dict) -> Run:
+    residual, modulus = key
+    return run(cells | {RESIDUAL: residual, MODULUS: modulus})
+
+
+def _findings(
+    runs: Runs, finer: Runs, stronger: Run, reaches: crests.Reaches, half_step: crests.Reaches
+) -> list[Finding]:
+    stiff, middle, soft = (runs[residual, 50.0] for residual in RESIDUALS)
+    run_outs = [one.quantities["run_out"] for one in (stiff, middle, soft)]
+    sunk = [one.pieces(one.outcome.points)[-1].settlement for one in (stiff, middle, soft)]
+    crumbled = _crumbled(middle)
+    ridges = [ridge_count(runs[4.0, modulus]) for modulus in MODULI]
     return [
         Finding(
             "the lower the residual cohesion, the further the failure goes",
             "run-out grows from 12 to 8 to 4 kPa",
-            ", ".join(f"{value:.2f}" for value in run_outs) + " m",
+            _metres(run_outs),
             run_outs[0] < run_outs[1] < run_outs[2],
         ),
         Finding(
             "12 kPa: a complete shear band, very limited slumping at the crest",
-            "one block, and not more than a tenth fails after the first slide",
-            f"{stiff['block_count']} block, {_later(stiff):.0f} %",
-            stiff["block_count"] == 1 and _later(stiff) < 10.0,
+            "one band cuts the crest; what it cuts off sinks less than with 8 and 4 kPa and than half of the height",
+            f"{_cuts(stiff)}; sinks {_metres(sunk)}",
+            len(stiff.cuts) == 1 and sunk[0] < min(*sunk[1:], 0.5 * stiff.study.geometry.height_m),
+        ),
+        _one_circle(middle, finer[8.0, 50.0], stronger),
+        Finding(
+            "8 kPa: small failures at the back scarp",
+            f"at {FIRST_SLIDE:g} s less than a fifth of what the circle cut off has come apart from its largest piece",
+            f"{100 * crumbled:.0f} %",
+            0.0 < crumbled < 0.2,
+            "" if 0.0 < crumbled < 0.2 else CRUMBLED,
         ),
         Finding(
-            "8 kPa: one complete slip circle with small failures at the back scarp",
-            "fails on after the first slide, but not to the boundary",
-            f"{_later(middle):.0f} % more, {middle['retrogression_distance']:.1f} m back",
-            _later(middle) > 10.0 and not middle["retrogression_censored"],
+            "4 kPa: retrogression until the boundary stops it",
+            "the failure reaches the boundary behind the crest",
+            f"{_cuts(soft)}; ends {soft.quantities['retrogression_distance']:.1f} m back",
+            bool(soft.quantities["retrogression_censored"]),
         ),
         Finding(
-            "4 kPa: retrogression until the boundary stops it; horsts and grabens",
-            "reaches the boundary, three or more blocks",
-            f"{soft['retrogression_distance']:.1f} m back, {soft['block_count']} blocks",
-            bool(soft["retrogression_censored"]) and soft["block_count"] >= 3,
+            "4 kPa: horsts and grabens, with every softening modulus",
+            f"two or more ridges in what slid, {RIDGE:.0%} of the height or more above the troughs beside them",
+            f"{', '.join(map(str, ridges))} ridges for 25, 50, 75 kPa; {ridge_count(stiff)} with 12 kPa residual",
+            min(ridges) >= 2,
+            "" if min(ridges) >= 2 else DROWNED,
         ),
-        Finding(
-            "4 kPa: retrogression grows with the softening modulus",
-            "grows from 25 to 50 to 75 kPa",
-            ", ".join(f"{value:.2f}" for value in lost) + " m",
-            grows,
-            "" if grows else MODULUS,
-        ),
+        *crests.findings(reaches, half_step),
+        _steepened(soft),
     ]
 
 
-def _later(found) -> float:
-    """What failed after the first slide, in per cent of that."""
-    return 100.0 * (found["failure_volume"] / found["initial_failure_volume"] - 1.0)
+def _one_circle(own: Run, finer: Run, stronger: Run) -> Finding:
+    agrees = len(own.cuts) == 1
+    cell = finer.study.discretisation.cell_m
+    return Finding(
+        "8 kPa: one complete slip circle",
+        f"one band cuts the crest, by {FIRST_SLIDE:g} s, and none behind it",
+        f"{_cuts(own)}; on cells of {cell:g} m {_cuts(finer)}; "
+        f"with a peak of {stronger.study.material[0].cohesion_kpa:g} kPa {_cuts(stronger)}",
+        agrees,
+        "" if agrees else SECOND_CIRCLE,
+    )
+
+
+def _crumbled(own: Run) -> float:
+    """Share of what the first band cut off the body that is not in the largest of its pieces, in area, initially."""
+    points = own.at(FIRST_SLIDE)
+    area = own.outcome.frames[0][1]["volume"].sum()
+    standing, *slid = own.pieces(points)
+    sheared = points["plastic_strain"] >= own.residual_strain
+    apart = sum(piece.area for piece in slid) - max(piece.area for piece in slid)
+    scarp = sheared & (points["x_initial"] < slid[-1].back) & (points["y_initial"] > 0.5 * own.study.geometry.height_m)
+    return float((apart + scarp.sum() * area / len(sheared)) / (area - standing.area))
+
+
+def scarp_angle(own: Run) -> float:
+    """Slope of the face behind the first slide, over the upper half of its height [degrees]."""
+    points, height = own.at(FIRST_SLIDE), own.study.geometry.height_m
+    whole = points["plastic_strain"] < own.residual_strain
+    back = own.standing(points)
+    middle = whole & (np.abs(points["y_initial"] - 0.5 * height) < 0.5 * own.study.discretisation.cell_m)
+    x = points["x_initial"][middle]
+    gaps = np.flatnonzero(np.diff(np.sort(x)) > 1.5 * own.spacing)
+    face = np.sort(x)[gaps[0] if len(gaps) else -1]
+    return degrees(atan2(0.5 * height, face - back))
+
+
+def _steepened(soft: Run) -> Finding:
+    angle, before = scarp_angle(soft), soft.study.geometry.angle_deg
+    return Finding(
+        "a small slope is steepened by its first failure, and further ones retrogress (Wang, Vardon and Hicks 2016)",
+        "the face behind the first slide of 4 kPa is steeper than the slope was, and another band cuts it off",
+        f"{before:.0f} degrees, then {angle:.0f}; {_cuts(soft)}",
+        angle > before and len(soft.cuts) > 1,
+    )
+
+
+def ridge_count(own: Run) -> int:
+    """Ridges in the ground of what slid that stand out by RIDGE of the height."""
+    from scipy.signal import find_peaks
+
+    height = own.study.geometry.height_m
+    surface = own.quantities["final_surface"]
+    centres = (np.arange(len(surface)) + 0.5) * own.study.output.surface_bin_m
+    slid = surface[centres > own.standing(own.outcome.points)]
+    return len(find_peaks(slid, prominence=RIDGE * height)[0])
+
+
+def _metres(values) -> str:
+    return ", ".join(f"{value:.2f}" for value in values) + " m"
+
+
+def _cuts(own: Run) -> str:
+    return " and ".join(f"{cut.distance:.1f} m at {cut.time:.1f} s" for cut in own.cuts) or "none"
+
+
+def _text(runs: Runs, finer: Runs, reaches: crests.Reaches) -> str:
+    return f"{WHY}\n\n{_numbers(runs)}\n\n{FINER_HEAD}\n\n{_numbers(finer)}\n\n{NOTE}\n\n{crests.numbers(reaches)}\n"
 
 
 def _numbers(runs: Runs) -> str:
     rows = []
-    for (residual, modulus), outcome in runs.items():
-        q = outcome.quantities
+    for (residual, modulus), own in runs.items():
+        q, outcome = own.quantities, own.outcome
         reach = f"{q['retrogression_distance']:.2f}" + (" (boundary)" if q["retrogression_censored"] else "")
         rest = f"{q['time_at_rest']:.1f}" if outcome.status == "ok" else "no"
         rows.append(
-            f"{residual:g} | {modulus:g} | {q['run_out']:.2f} | {reach} | {q['failure_volume']:.1f} "
+            f"{residual:g} | {modulus:g} | {q['run_out']:.2f} | {reach} | {_cuts(own)} | {q['failure_volume']:.1f} "
             f"| {q['initial_failure_volume']:.1f} | {q['block_count']} | {rest} "
             f"| {100 * q['numerical_dissipation_share']:.1f} % | {100 * q['energy_balance_error']:.1f} %"
         )
-    return f"{table(HEAD, rows)}\n\nNumerical dissipation and energy error are shares of the work of gravity.\n"
+    return table(HEAD, rows)
 
 
 def _draw(runs: Runs, path: Path) -> None:
     """Draw the final plastic strain of the runs, one below the other, in one frame and one scale of colours."""
-    polygon, points = outline(study(STUDY)), [outcome.points for outcome in runs.values()]
+    polygon = outline(next(iter(runs.values())).study)
+    points = [own.outcome.points for own in runs.values()]
     frame = view([polygon[:, 0], *(p["x"] for p in points)], [polygon[:, 1], *(p["y"] for p in points)])
     top = strain_limit(p["plastic_strain"] for p in points)
     with drawing():
@@ -106,19 +186,36 @@ def _draw(runs: Runs, path: Path) -> None:
         save(figure, path)
 
 
-HEAD = (
-    "residual cohesion [kPa] | softening modulus [kPa] | run-out [m] | retrogression [m] | failure volume [m3/m] "
-    "| first slide [m3/m] | blocks | at rest [s] | numerical dissipation | energy error"
-)
 CAPTION = "Final plastic strain of the five runs over the initial outline: bright bands are where the soil sheared."
-MODULUS = (
-    "With 75 kPa the soil softens before the second slide has its full height: more of the crest goes with the first "
-    "slide, and what it leaves behind stands."
+HEAD = (
+    "residual cohesion [kPa] | softening modulus [kPa] | run-out [m] | retrogression [m] | bands cut the crest "
+    "| failure volume [m3/m] | first slide [m3/m] | blocks | at rest [s] | numerical dissipation | energy error"
 )
+WHY = """Each slope begins alike: a band at the toe, where stresses are largest, softens and grows up to the crest as an
+arc; what it cuts off turns on it and runs out. With 12 kPa what is left in the band carries the block after two metres.
+With 8 kPa it slides on and takes the soil at its scarp with it, a wedge between two bands. With 4 kPa the block
+leaves so far that the face behind it stands alone, steeper than the slope was, and fails as the slope did; the second
+block takes the same way. Blocks tilt backwards and part along bands that dip the other way: their edges are ridges,
+horsts, and what sinks between them are troughs, grabens. Yellow soil has been sheared through and through."""
+FINER_HEAD = "The same on cells of half the size, with the same energy to soften a metre of band:"
+NOTE = """Numerical dissipation and energy error are shares of the work of gravity. The first slide is what has failed
+at the first minimum of the kinetic energy, which is a weak mark: where two slides overlap it moves with the time step.
 
+How far back the slope of 4 kPa fails, what the second slide leaves of the crest up to the boundary, and the lowest
+ground 3 to 5 m in front of the face that it leaves, 2.5 s after its band is complete:"""
+SECOND_CIRCLE = (
+    "the face behind the circle is within a percent of standing: for some seconds next to nothing moves, then a second "
+    "band forms slowly, and its block stops after less than a metre. With 1 % more peak strength it does not come, nor "
+    "on cells of half the size: there one circle is all, as in the paper."
+)
+CRUMBLED = "the band of coarse cells is so wide that what it shears is no small part of the slide."
+DROWNED = "its blocks lie in sheared soil of their own height, so that few stand out."
 CASE = Case(
     title="The short slope: five runs",
-    document="Vardon, Wang and Hicks (2017), 15th IACMAG, Wuhan",
+    document=(
+        "Vardon, Wang and Hicks (2017), 15th IACMAG, Wuhan; the same slope as in Wang, Vardon and Hicks (2016), "
+        "Computers and Geotechnics 78"
+    ),
     says=(
         "The residual strength decides whether a slope slumps, slides once or retrogresses; with the lowest one "
         "retrogression grows with the rate of softening."

@@ -6,46 +6,31 @@ modulus scaled to them. No tolerance: an order or a kind comes out or it does no
 
 from functools import cache
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-import rfmpm
-from rfmpm import realisation
+from rfmpm.benchmark.papers.short_slope import CELL, MODULUS, RESIDUAL, run
+from rfmpm.benchmark.papers.short_slope_five_runs import ridge_count, scarp_angle
 from rfmpm.failure_modes import MODES
-from rfmpm.quantities.state import label_cells
 
-SHORT_SLOPE = Path(__file__).parents[3] / "configs" / "papers" / "vardon_2017_short_slope.toml"
-CREST, HEIGHT, VOLUME, PEAK = 10.0, 5.0, 62.5, 20.0  # [m], [m], [m3/m], [kPa]
+CREST, HEIGHT, VOLUME = 10.0, 5.0, 62.5  # [m], [m], [m3/m]
 RESIDUALS = (12.0, 8.0, 4.0)  # [kPa]
 MODULI = (25.0, 50.0, 75.0)  # [kPa]
+FIRST_SLIDE = 2.5  # [s]: its band is complete by then
 
 
 @cache
-def outcome(residual=4.0, modulus=50.0, cell=0.5, end=40.5, frames=1):
-    study = rfmpm.load_study(SHORT_SLOPE).with_changes(
-        {
-            "discretisation.cell_m": cell,
-            "material.0.residual_cohesion_kpa": residual,
-            "material.0.softening_modulus_kpa": modulus,
-            "time.end_s": end,
-        }
-    )
-    return realisation.simulate(realisation.prepare(study), frames=frames)
+def slope(residual=4.0, modulus=50.0, cell=0.5, end=40.5):
+    return run({CELL: cell, RESIDUAL: residual, MODULUS: modulus, "time.end_s": end})
+
+
+def outcome(residual=4.0, modulus=50.0):
+    return slope(residual, modulus).outcome
 
 
 def over_residuals(name):
     return [outcome(residual).quantities[name] for residual in RESIDUALS]
-
-
-def has_residual_band(points, cell, residual, modulus=50.0):
-    """Whether connected points that have softened to the residual lead from the base to the crest."""
-    band = points["plastic_strain"] > (PEAK - residual) / (modulus * cell / 0.25)
-    group = label_cells(points["x"][band], points["y"][band], cell, diagonal=True)
-    low = points["y_initial"][band] < cell
-    high = (points["y_initial"][band] > HEIGHT - 0.5 * cell) & (points["x_initial"][band] < CREST)
-    return bool(np.intersect1d(group[low], group[high]).size)
 
 
 def boundary_reached(history):
@@ -56,9 +41,9 @@ def boundary_reached(history):
 
 @pytest.mark.parametrize("residual", RESIDUALS)
 def test_every_run_has_a_complete_shear_band_and_ends_at_rest_or_nearly(residual):
-    run = outcome(residual)
-    assert has_residual_band(run.points, 0.5, residual)
-    assert run.history["kinetic_energy"][-1] < 0.01 * run.history["kinetic_energy"].max()
+    assert slope(residual).cuts[0].time < FIRST_SLIDE
+    energy = outcome(residual).history["kinetic_energy"]
+    assert energy[-1] < 0.01 * energy.max()
 
 
 @pytest.mark.parametrize("name", ["run_out", "failure_volume", "retrogression_distance", "influence_distance"])
@@ -69,6 +54,7 @@ def test_lower_residual_fails_further_in_every_measure(name):
 
 def test_residual_12_slumps_a_little_behind_one_band():
     found = outcome(12.0).quantities
+    assert len(slope(12.0).cuts) == 1
     assert found["block_count"] == 1
     assert found["run_out"] < 0.6 * HEIGHT
     assert found["retrogression_distance"] < 0.5 * CREST
@@ -76,13 +62,13 @@ def test_residual_12_slumps_a_little_behind_one_band():
 
 
 def test_residual_8_fails_at_the_back_after_its_slip_circle_but_not_to_the_boundary():
-    run = outcome(8.0)
-    time, crest = run.history["time"], run.history["crest"]
-    # The circle cuts the crest within 2.5 s, as with 12 kPa, half way back; what follows is behind it.
-    assert 0.5 * CREST < crest[time < 2.5].min() < 0.65 * CREST
-    assert crest[-1] < crest[time < 2.5].min() - 1.0
-    assert not run.quantities["retrogression_censored"]
-    assert run.quantities["failure_volume"] < 0.7 * VOLUME
+    first, *behind = slope(8.0).cuts
+    found = outcome(8.0).quantities
+    # The circle cuts the crest as with 12 kPa, less than half way back; what follows is behind it, and not at once.
+    assert 0.35 * CREST < first.distance < 0.5 * CREST
+    assert all(cut.time > first.time + 1.0 for cut in behind)
+    assert not found["retrogression_censored"]
+    assert found["failure_volume"] < 0.7 * VOLUME
 
 
 def test_residual_4_retrogresses_until_the_boundary_stops_it_and_leaves_at_least_three_blocks():
@@ -116,9 +102,17 @@ def test_retrogression_grows_with_the_softening_modulus():
     assert run_outs[0] < run_outs[1] < run_outs[2]
 
 
+def test_face_behind_the_first_slide_is_steeper_than_the_slope_was_and_fails_in_its_turn():
+    assert scarp_angle(slope()) > 45.0
+    assert len(slope().cuts) > 1
+
+
+@pytest.mark.parametrize("modulus", MODULI)
+def test_what_slid_has_horsts_and_grabens_with_every_modulus(modulus):
+    assert ridge_count(slope(modulus=modulus)) >= 2
+
+
 @pytest.mark.slow
 def test_first_band_reaches_the_surface_at_about_one_and_a_half_seconds():
-    run = outcome(cell=0.25, end=3.0, frames=1000)
-    complete = next(time for time, points in run.frames if has_residual_band(points, 0.25, 4.0))
-    # The paper tells its times to half a second; found 1.3 s.
-    assert complete == pytest.approx(1.5, abs=0.25)
+    # The paper tells its times to half a second; found 1.4 s.
+    assert slope(cell=0.25, end=3.0).cuts[0].time == pytest.approx(1.5, abs=0.25)
