@@ -1,7 +1,10 @@
 """Slip surfaces of any shape: lines with corners, moved from a circle to where the factor is least.
 
 A surface is admissible where it stays in the ground and above the base, never steepens on its way down, so that the
-body can slide off it without a gap, and rises no steeper at its end than a passive wedge without friction.
+body can slide off it without a gap, and rises no steeper at its end than a passive wedge without friction. It turns
+sharply only where the strength along it changes: a body that slides round a sharp corner shears within, above the
+corner, which costs strength that no method of slices counts. Without this rule homogeneous slopes come out up to 5 %
+below the upper bound of limit analysis, on surfaces whose line of thrust is as it should be.
 """
 
 import numpy as np
@@ -14,6 +17,8 @@ from rfmpm.stability.slices import cut, ground_level
 STEEPEST_RISE = 1.0  # of the last piece: 45 degrees
 SHORTEST = 0.25  # horizontal width of a piece, in squares
 WORTHWHILE = 1e-5  # gain of a step, relative to the factor
+SHARPEST = 1.5  # turn of a corner per length, over that of the whole surface; a spiral comes to 1.3
+CONTRAST = 1.5  # of strength before and behind a corner that may be sharper: a thin weak layer, the base
 STRAIGHT = 1e-9  # what a corner may turn the wrong way, as a difference of slopes
 
 
@@ -56,7 +61,33 @@ def of_corners(ground, soil, corners, count, pieces, method, line, slices):
     own = fill_in(corners, count, pieces, line)
     if cut(ground, soil, line.x, line.y, own, slices) < THINNEST * soil.square:
         return np.inf
+    if not turns_gently(corners, count, pieces, slices):
+        return np.inf
     return factor(slices, own, method)
+
+
+@kernel
+def turns_gently(corners, count, pieces, slices):
+    """Whether no corner of a surface cut into slices is sharp but where the strength along it changes."""
+    last, whole, length = count - 1, corners.x[count - 1] - corners.x[0], 0.0
+    for i in range(last):
+        length += np.hypot(corners.x[i + 1] - corners.x[i], corners.y[i + 1] - corners.y[i])
+    first = np.arctan2(corners.y[1] - corners.y[0], corners.x[1] - corners.x[0])
+    final = np.arctan2(corners.y[last] - corners.y[last - 1], corners.x[last] - corners.x[last - 1])
+    sharpest, done = SHARPEST * (final - first) / length, 0
+    angle_before, length_before, strength_before = first, 0.0, 0.0
+    for i in range(last):
+        width, rise = corners.x[i + 1] - corners.x[i], corners.y[i + 1] - corners.y[i]
+        angle, own, strength = np.arctan2(rise, width), np.hypot(width, rise), 0.0
+        ends = done + int(np.ceil(pieces * width / whole))  # of its slices, as `fill_in` cuts them
+        for k in range(done, ends):
+            strength += slices.cohesion[k] + slices.weight[k] * slices.cosine[k] * slices.friction[k]
+        strength /= own
+        is_sharp = i > 0 and angle - angle_before > 0.5 * sharpest * (length_before + own)
+        if is_sharp and max(strength, strength_before) < CONTRAST * min(strength, strength_before):
+            return False
+        angle_before, length_before, strength_before, done = angle, own, strength, ends
+    return True
 
 
 @kernel

@@ -34,21 +34,37 @@ def test_the_spiral_is_that_of_chen():
 @pytest.mark.parametrize("angle", [30.0, 45.0, 60.0])
 @pytest.mark.parametrize(("friction", "ratio"), DRAINED)
 def test_circles_with_friction_come_close_to_the_upper_bound(angle, friction, ratio):
-    # What two families of surfaces and two sets of assumptions differ by; with 60 degrees and much cohesion the soil at
-    # the crest is pulled, which Bishop's vertical forces do not see: another half per cent.
+    # Two per cent: what two families of surfaces and two sets of assumptions differ by.
     case = drained(angle, friction, ratio)
-    pulled = angle == 60.0 and ratio == 0.15
-    assert abs(error_of(case, factor_on_circles(case, "bishop"))) < (0.025 if pulled else 0.02)
-    if not pulled:
+    assert abs(error_of(case, factor_on_circles(case, "bishop"))) < 0.02
+    if is_solved(angle, ratio):
         for method in ("spencer", "morgenstern_price"):
             assert abs(error_of(case, factor_on_circles(case, method))) < 0.02
 
 
+def is_solved(angle, ratio):
+    """With 60 degrees and much cohesion no circle near the spiral balances all forces: the crest would have to pull."""
+    return not (angle == 60.0 and ratio == 0.15)
+
+
+@pytest.mark.parametrize("method", ["spencer", "morgenstern_price"])
+@pytest.mark.parametrize("angle", [30.0, 45.0, 60.0])
+@pytest.mark.parametrize(("friction", "ratio"), DRAINED)
+def test_surfaces_of_any_shape_do_not_undercut_the_upper_bound(angle, friction, ratio, method):
+    # Two per cent, as for circles; with sharp corners allowed they come out to 4.8 % below.
+    if is_solved(angle, ratio):
+        case = drained(angle, friction, ratio)
+        assert abs(error_of(case, critical_surface(sides_of(case.section), *case.soil, method).factor)) < 0.02
+
+
 @pytest.mark.parametrize("method", ["bishop", "spencer", "morgenstern_price"])
 @pytest.mark.parametrize("name", ["ACADS 1a", "ACADS 1b, dry crack", "ACADS 1c, three layers"])
-def test_circles_through_published_slopes(name, method):
+def test_surfaces_through_published_slopes(name, method):
     # Two per cent: the referees themselves give one figure of three digits to programs that differ by as much.
-    assert abs(error_of(ACADS[name], factor_on_circles(ACADS[name], method))) < 0.02
+    case = ACADS[name]
+    assert abs(error_of(case, factor_on_circles(case, method))) < 0.02
+    # Half a per cent more, by which 1.00 may be rounded: the least over all shapes by Morgenstern-Price is 0.980.
+    assert abs(error_of(case, critical_surface(sides_of(case.section), *case.soil, method).factor)) < 0.025
 
 
 @pytest.mark.parametrize("method", ["spencer", "morgenstern_price"])

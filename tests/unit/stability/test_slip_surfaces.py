@@ -7,6 +7,8 @@ import pytest
 
 from rfmpm.stability import Section, critical_surface, factor_along, ground_of, sides_of
 from rfmpm.stability.arcs import Line, arc, draw, place_on_ground
+from rfmpm.stability.equilibrium import LARGEST_PULL, bishop, pull
+from rfmpm.stability.polygons import fill_in, turns_gently
 from rfmpm.stability.section import soil_of
 from rfmpm.stability.slices import cut, make_slices
 
@@ -163,6 +165,33 @@ def test_surfaces_of_any_shape_do_not_steepen_on_their_way_down():
         found = critical_surface(sides_of(section), cohesion, friction + 0.3, weight, "spencer")
         slopes = np.diff(found.surface[:, 1]) / np.diff(found.surface[:, 0])
         assert np.all(np.diff(slopes) > -1e-6)
+
+
+def test_a_surface_turns_sharply_only_where_the_strength_along_it_changes():
+    section = slope(45.0, foundation=2.0)
+    (side,) = sides_of(section)
+    corners = Line(np.array([8.0, 10.0, 12.0, 14.0, 16.0]), np.array([5.0, 1.0, 0.0, -0.5, -0.6]))
+    is_weak = section.points[:, 0] > 10.0
+    for weak, is_taken in ((12e3, False), (6e3, True)):
+        cohesion = np.where(is_weak, weak, 12e3)
+        soil, line, slices = soil_of(side, cohesion, *uniform(section)[1:]), Line(*np.empty((2, 200))), make_slices(200)
+        pieces = fill_in(corners, 5, 96, line)
+        cut(side.ground, soil, line.x, line.y, pieces, slices)
+        assert turns_gently(corners, 5, 96, slices) is is_taken
+
+
+def test_no_circle_is_taken_on_which_pull_takes_much_of_the_friction():
+    slices = make_slices(2)
+    for i, values in enumerate(((1.0, 0.99, 0.14, 5e3, 60e3, 0.2), (4.0, 0.3, 0.95, 200e3, 60e3, 0.2))):
+        for name, value in zip(("width", "sine", "cosine", "weight", "cohesion", "friction"), values, strict=True):
+            getattr(slices, name)[i] = value
+    normal = (5e3 - 60e3 * 0.99) / (0.14 + 0.99 * 0.2), (200e3 - 60e3 * 0.3) / (0.95 + 0.3 * 0.2)
+    expected = -0.2 * normal[0] / (120e3 + 0.2 * sum(normal))
+    assert pull(slices, 2, 1.0) == pytest.approx(expected, rel=1e-12)  # identity
+    assert expected > LARGEST_PULL
+    assert bishop(slices, 2) == np.inf
+    slices.friction[:] = 0.0
+    assert bishop(slices, 2) == pytest.approx(120e3 / (5e3 * 0.99 + 200e3 * 0.3), rel=1e-6)  # what ends the iteration
 
 
 def test_a_tension_crack_takes_the_surface_s_upper_end():
