@@ -1,6 +1,7 @@
 """Factor of safety of a body of slices: what each method of slices demands of the forces between them.
 
-The factor divides the whole strength along the surface, cohesion and tangent of the angle of friction alike.
+The factor divides the whole strength along the surface, cohesion and tangent of the angle of friction alike; but not
+the friction of a base along which it runs, as in strength reduction: that is no property of the soil.
 """
 
 import numpy as np
@@ -25,6 +26,18 @@ def factor(slices, count, method):
 
 
 @kernel
+def strength(cohesion, friction, weight, limit):
+    """Force of the cohesion and tangent of the friction on a slice: of the soil, or of the base below it.
+
+    The base decides where its friction, times the factor that does not divide it, under the weight of the slice is less
+    than the strength of the soil; it has none, limit infinite, but where it is the slice's.
+    """
+    if limit < np.inf and limit * weight < cohesion + friction * weight:
+        return 0.0, limit
+    return cohesion, friction
+
+
+@kernel
 def ordinary(slices, count):
     """Factor without forces between the slices (Fellenius 1936): where the others start."""
     resisting, driving = 0.0, 0.0
@@ -46,11 +59,13 @@ def bishop(slices, count):
     for _ in range(ROUNDS):
         resisting = 0.0
         for i in range(count):
-            rotation = slices.cosine[i] + slices.sine[i] * slices.friction[i] / found
-            if slices.sine[i] < 0.0 and slices.friction[i] > 0.0 and rotation < LEAST_ROTATION:
+            limit, weight = slices.limit[i] * found, slices.weight[i]
+            cohesion, friction = strength(slices.cohesion[i], slices.friction[i], weight, limit)
+            rotation = slices.cosine[i] + slices.sine[i] * friction / found
+            if slices.sine[i] < 0.0 and friction > 0.0 and rotation < LEAST_ROTATION:
                 return np.inf
-            force = slices.cohesion[i] * slices.cosine[i] + slices.weight[i] * slices.friction[i]
-            resisting += force / rotation
+            force = cohesion * slices.cosine[i] + weight * friction
+            resisting += force / rotation * slices.lever[i]
         better = resisting / driving
         if abs(better - found) < CLOSE * found:
             return better if pull(slices, count, better) < LARGEST_PULL else np.inf
@@ -69,10 +84,11 @@ def pull(slices, count, found):
     """
     lost, whole = 0.0, 0.0
     for i in range(count):
-        s, c, t = slices.sine[i], slices.cosine[i], slices.friction[i]
-        force = t * (slices.weight[i] - slices.cohesion[i] * s / found) / (c + s * t / found)
+        s, c, weight = slices.sine[i], slices.cosine[i], slices.weight[i]
+        cohesion, t = strength(slices.cohesion[i], slices.friction[i], weight, slices.limit[i] * found)
+        force = t * (weight - cohesion * s / found) / (c + s * t / found)
         lost -= min(force, 0.0)
-        whole += slices.cohesion[i] + force
+        whole += cohesion + force
     return lost / whole
 
 
@@ -103,14 +119,15 @@ def general(slices, count, method):
     for _ in range(ROUNDS):
         resisting, driving, before = 0.0, 0.0, 1.0
         for i in range(count):
-            s, c, t = slices.sine[i], slices.cosine[i], slices.friction[i]
+            s, c, weight = slices.sine[i], slices.cosine[i], slices.weight[i]
+            cohesion, t = strength(slices.cohesion[i], slices.friction[i], weight, slices.limit[i] * found)
             a, b = c * found + s * t, s * found - c * t
             passed = (a + ratio * slices.share[i] * b) / before
             before = a + ratio * slices.share[i + 1] * b
             if not (passed > 0.0 and before > 0.0):
                 return np.inf
-            resisting = passed * resisting + slices.cohesion[i] + slices.weight[i] * c * t
-            driving = passed * driving + slices.weight[i] * s
+            resisting = passed * resisting + cohesion + weight * c * t
+            driving = passed * driving + weight * s
             slices.held[i], slices.pushed[i] = resisting / before, driving / before
         if not (driving > 0.0 and resisting > 0.0):
             return np.inf

@@ -12,6 +12,7 @@ from rfmpm.stability.slices import Slices, cut, make_slices
 
 ASSUMPTIONS = {"bishop": BISHOP, "spencer": SPENCER, "morgenstern_price": MORGENSTERN_PRICE}
 WAYS, DEPTHS = 56, 12  # arcs surveyed: ways along the ground, beside its corners, and depths
+DEPTHS_CUT_OFF = 6  # of arcs that the base cuts off
 COARSE, FINE = 32, 96  # slices of an arc that is surveyed, and of one that is judged
 STARTS = 4  # best arcs of the survey, apart from each other, that are refined
 ROUNDS = 24  # of refinement
@@ -27,7 +28,7 @@ class Critical(NamedTuple):
 
     Attributes:
         factor: of safety [-]; infinite where the method has no solution on any surface.
-        kind: "circle" or "polygon"; empty where there is none.
+        kind: "circle", cut off at a base with friction, or "polygon"; empty where there is none.
         surface: from its upper end, on the ground or at the foot of the tension crack, to the lower, shape (k, 2) [m].
     """
 
@@ -129,6 +130,8 @@ def _ways(side: Side) -> np.ndarray:
 
 def _best_circle(side: Side, soil: Soil, ways: np.ndarray, assumption: int, bench: _Bench) -> tuple[Critical, Ends]:
     ground, depths = side.ground, np.linspace(1.0 / DEPTHS, 1.0, DEPTHS)
+    if ground.base_friction < np.inf:
+        depths = np.append(depths, 1.0 + np.arange(1.0, DEPTHS_CUT_OFF + 1.0) / DEPTHS_CUT_OFF)
     found = np.empty((len(ways), len(ways), len(depths)))
     survey(ground, soil, ways, depths, COARSE, assumption, *bench, found)
     steps = (ways[-1] / (WAYS - 1), 1.0 / DEPTHS)

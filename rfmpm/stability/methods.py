@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rfmpm.mpm.boundary import Friction, Roller
 from rfmpm.mpm.scene import GRAVITY
 from rfmpm.stability.limit_equilibrium import Critical, critical_surface
 from rfmpm.stability.section import Section, Side, sides_of
@@ -25,10 +26,10 @@ class Strength(NamedTuple):
 def section_of(scene: Any, points_per_cell: int) -> Section:
     """Make the section of a scene; its sides are walls and its floor is firm, so that no surface leaves through them.
 
-    Sliding on the floor itself is left out: soil that lies on it is taken to hold to it by its own strength.
+    On a floor with friction, or on rollers, surfaces run along it; soil on a fixed one holds by its own strength.
 
     Args:
-        scene: `body`, `points`, `load` and `cell` are read.
+        scene: `body`, `points`, `load`, `walls` and `cell` are read.
         points_per_cell: in a full cell.
 
     Returns:
@@ -36,11 +37,19 @@ def section_of(scene: Any, points_per_cell: int) -> Section:
     """
     outline, points = scene.body.outline, np.column_stack(scene.points.position)
     ground, square = ground_of(outline, scene.body.length), scene.cell / sqrt(points_per_cell)
-    section = Section(ground, float(outline[:, 1].min()), points, square)
+    friction = _friction_of(scene.walls.base)
+    section = Section(ground, float(outline[:, 1].min()), points, square, base_friction=friction)
     if scene.load is None:
         return section
     left = np.floor(points[scene.load.point, 0] / square + 1e-9) * square
     return section._replace(load=np.column_stack([left, left + square, scene.load.force / square]))
+
+
+def _friction_of(base: tuple) -> float:
+    """Coefficient of friction of a base [-]; infinite where nothing moves on it."""
+    if isinstance(base, Friction):
+        return base.coefficient
+    return 0.0 if isinstance(base, Roller) else np.inf
 
 
 def ground_of(outline: np.ndarray, length: float) -> np.ndarray:

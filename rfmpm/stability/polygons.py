@@ -11,7 +11,7 @@ import numpy as np
 
 from rfmpm.kernel_tools import kernel
 from rfmpm.stability.arcs import THINNEST, arc, draw, place_on_ground
-from rfmpm.stability.equilibrium import factor
+from rfmpm.stability.equilibrium import factor, strength
 from rfmpm.stability.slices import cut, ground_level
 
 STEEPEST_RISE = 1.0  # of the last piece: 45 degrees
@@ -75,18 +75,20 @@ def turns_gently(corners, count, pieces, slices):
     first = np.arctan2(corners.y[1] - corners.y[0], corners.x[1] - corners.x[0])
     final = np.arctan2(corners.y[last] - corners.y[last - 1], corners.x[last] - corners.x[last - 1])
     sharpest, done = SHARPEST * (final - first) / length, 0
-    angle_before, length_before, strength_before = first, 0.0, 0.0
+    angle_before, length_before, resistance_before = first, 0.0, 0.0
     for i in range(last):
         width, rise = corners.x[i + 1] - corners.x[i], corners.y[i + 1] - corners.y[i]
-        angle, own, strength = np.arctan2(rise, width), np.hypot(width, rise), 0.0
+        angle, own, resistance = np.arctan2(rise, width), np.hypot(width, rise), 0.0
         ends = done + int(np.ceil(pieces * width / whole))  # of its slices, as `fill_in` cuts them
         for k in range(done, ends):
-            strength += slices.cohesion[k] + slices.weight[k] * slices.cosine[k] * slices.friction[k]
-        strength /= own
+            weight = slices.weight[k]
+            cohesion, friction = strength(slices.cohesion[k], slices.friction[k], weight, slices.limit[k])
+            resistance += cohesion + weight * slices.cosine[k] * friction
+        resistance /= own
         is_sharp = i > 0 and angle - angle_before > 0.5 * sharpest * (length_before + own)
-        if is_sharp and max(strength, strength_before) < CONTRAST * min(strength, strength_before):
+        if is_sharp and max(resistance, resistance_before) < CONTRAST * min(resistance, resistance_before):
             return False
-        angle_before, length_before, strength_before, done = angle, own, strength, ends
+        angle_before, length_before, resistance_before, done = angle, own, resistance, ends
     return True
 
 

@@ -19,6 +19,7 @@ class Section(NamedTuple):
         square: side of the square that a material point stands for [m].
         crack: depth of the tension crack in which every slip surface begins [m].
         load: pressures downwards on the ground, none over another: from x, to x [m] and pressure [Pa], shape (m, 3).
+        base_friction: coefficient of friction of the base [-]; infinite where soil holds to it by its own strength.
     """
 
     ground: np.ndarray
@@ -27,6 +28,7 @@ class Section(NamedTuple):
     square: float
     crack: float = 0.0
     load: np.ndarray = np.empty((0, 3))
+    base_friction: float = np.inf
 
 
 class Ground(NamedTuple):
@@ -40,6 +42,7 @@ class Ground(NamedTuple):
     crack: float  # [m]
     load_x: np.ndarray  # ends of the loads on it from left to right; empty where there is none, shape (2 m,) [m]
     load: np.ndarray  # force of what lies to the left of each, shape (2 m,) [N/m]
+    base_friction: float  # [-]; infinite where no surface slides along the base
 
 
 class Soil(NamedTuple):
@@ -111,9 +114,8 @@ def _side(section: Section, ground: np.ndarray, sign: float) -> Side:
     x, y = ground[:: int(sign)].T * np.array([[sign], [1.0]])
     along = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
     area = np.concatenate([[0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(x))])
-    profile = Ground(
-        x.copy(), y.copy(), along, area, float(section.base), float(section.crack), *_loads(section.load, sign)
-    )
+    levels, loads = (float(section.base), float(section.crack)), _loads(section.load, sign)
+    profile = Ground(x.copy(), y.copy(), along, area, *levels, *loads, float(section.base_friction))
     left, bottom, point_of = _points_of_squares(section.points * [sign, 1.0], section.square)
     return Side(profile, left, bottom, section.square, point_of, sign)
 

@@ -18,6 +18,8 @@ class Slices(NamedTuple):
     weight: np.ndarray  # [N/m]
     cohesion: np.ndarray  # force of the cohesion along the base [N/m]
     friction: np.ndarray  # mean tangent along the base
+    limit: np.ndarray  # coefficient of friction of the firm base where it is the slice's; infinite elsewhere
+    lever: np.ndarray  # of the shear force about the centre of a circle, over its radius; 1 but on the firm base
     share: np.ndarray  # of the forces between slices, what a method needs on the way; shape (m + 1,)
     held: np.ndarray
     pushed: np.ndarray
@@ -44,6 +46,18 @@ def weight_below(soil, column, y):
     place = (y - soil.bottom) / soil.square
     row = min(max(int(np.floor(place)), 0), soil.cohesion.shape[0] - 1)
     return soil.weight[row, column] + (place - row) * (soil.weight[row + 1, column] - soil.weight[row, column])
+
+
+@kernel
+def cohesion_above(ground, soil, x, y):
+    """Force of the cohesion on the vertical through x from y to the ground [N/m]."""
+    height = ground_level(ground, x) - y
+    column = min(max(int((x - soil.left) / soil.square), 0), soil.cohesion.shape[1] - 1)
+    samples, whole = int(height / soil.square) + 1, 0.0
+    for k in range(samples):
+        row = int((y + (k + 0.5) / samples * height - soil.bottom) / soil.square)
+        whole += soil.cohesion[min(max(row, 0), soil.cohesion.shape[0] - 1), column]
+    return whole / samples * height
 
 
 @kernel
@@ -104,4 +118,6 @@ def cut(ground, soil, x, y, count, slices):
         slices.cosine[i - 1] = width / length
         slices.cohesion[i - 1] = cohesion / samples * length
         slices.friction[i - 1] = friction / samples
+        slices.limit[i - 1] = ground.base_friction if max(y[i - 1], y[i]) <= ground.base + touching else np.inf
+        slices.lever[i - 1] = 1.0
     return thickest

@@ -5,7 +5,7 @@ from math import radians
 import numpy as np
 import pytest
 
-from rfmpm.benchmark.safety.cases import DRAINED, acads, drained, face, taylor
+from rfmpm.benchmark.safety.cases import DRAINED, acads, drained, face, short_slope, taylor
 from rfmpm.benchmark.safety.document import error_of
 from rfmpm.benchmark.safety.spiral import stability_number
 from rfmpm.stability import Section, critical_surface, factor_along, sides_of
@@ -107,3 +107,12 @@ def test_a_slope_of_44_degrees_has_both_factors_of_toro_rojas(cohesion, factor):
     soil = [np.full(len(section.points), value) for value in (cohesion, radians(30.0), 2200.0 * 9.81)]
     found = critical_surface(sides_of(section), *soil, "morgenstern_price")
     assert found.factor == pytest.approx(factor, rel=0.01)
+
+
+def test_a_base_with_friction_takes_from_the_factor_what_limit_analysis_says():
+    # The short slope, 5 m at 45 degrees of 20 kPa: 1.224 on a rough base and 1.10 with a friction of 0.3. Two per cent:
+    # the soil shears above the corner where a surface meets the base, of which Bishop's method knows the cohesion only.
+    section, soil = short_slope()
+    for friction, factor in ((np.inf, 1.224), (0.3, 1.10)):
+        found = critical_surface(sides_of(section._replace(base_friction=friction)), *soil)
+        assert found.factor == pytest.approx(factor, rel=0.02)

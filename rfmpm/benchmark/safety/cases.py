@@ -1,7 +1,8 @@
 """Slopes whose factors of safety are published or known otherwise.
 
 ACADS: Giam and Donald (1989), Example problems for testing soil slope stability programs, Monash University, with the
-referees' factors; geometry and soils as problems 1, 2, 3, 7 and 8 of the verification manual of Slide (Rocscience).
+referees' factors; geometry and soils as problems 1, 2, 3, 7 and 8 of the verification manual of Slide (Rocscience). The
+factors are those that XSLOPE's documentation cites from it, SLIDE_BY_XSLOPE; geometry and soils are from memory.
 """
 
 from math import radians, tan
@@ -12,6 +13,7 @@ import numpy as np
 from rfmpm.benchmark.safety.spiral import factor_of_safety as by_spiral
 from rfmpm.stability import Section
 
+SLIDE_BY_XSLOPE = "https://xslope.readthedocs.io/en/latest/verification/rocscience/"  # read in its repository
 SQUARE = 0.25  # [m]
 SIMPLE = ((20.0, 35.0), (40.0, 35.0), (60.0, 25.0), (70.0, 25.0))  # ACADS 1: 10 m high, 2 to 1
 SEAM = ((0.0, 40.0), (16.5, 40.0), (41.0, 27.75), (64.0, 27.75))  # ACADS 3
@@ -107,7 +109,7 @@ def acads() -> list[Case]:
     referees = "ACADS, referees"
     return [
         Case("ACADS 1a", simple, plain, 1.00, 1.00, 0.02, referees, SLICES),
-        Case("ACADS 1b, dry crack", simple._replace(crack=crack), cohesive, 1.65, 1.70, 0.02, referees, SLICES),
+        Case("ACADS 1b, dry crack", simple._replace(crack=crack), cohesive, 1.65, 1.65, 0.02, referees, SLICES),
         Case("ACADS 1c, three layers", simple, layers, 1.39, 1.39, 0.02, referees, SLICES),
         Case("ACADS 3a, weak seam", seam, weak, 1.24, 1.27, 0.02, referees, GENERAL),
         Case("ACADS 3b, its given surface", seam, weak, 1.262, 1.277, 0.02, "Slide, problem 8", GENERAL, line),
@@ -125,6 +127,12 @@ def all_cases() -> list[Case]:
         *(drained(angle, friction, ratio) for angle in (30.0, 45.0, 60.0) for friction, ratio in DRAINED),
         *acads(),
     ]
+
+
+def short_slope() -> tuple[Section, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """The short slope and the undrained soil of its points: 5 m at 45 degrees, 20 kPa, 20 kN/m3."""
+    section = face(45.0, 5.0, 0.0, 10.0, 0.125)
+    return section, _uniform(section, 20e3, 0.0, 20e3)
 
 
 DRAINED = ((10.0, 0.15), (20.0, 0.10), (30.0, 0.05))

@@ -8,13 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rfmpm.benchmark.safety.cases import Case, all_cases
+from rfmpm.benchmark.safety.cases import SLIDE_BY_XSLOPE, Case, all_cases, short_slope
 from rfmpm.benchmark.safety.fields import DISPLACEMENTS, SCENES, Row, measure, shares, write_rows
 from rfmpm.benchmark.safety.peer import Peer, compare
 from rfmpm.benchmark.safety.pictures import draw_fields
 from rfmpm.benchmark.safety.text import REPORT
 from rfmpm.stability import critical_surface, factor_along, sides_of
 
+HOLDING = "base holds"  # the scene in which the factor is proportional to strength
 RATIO = 4.0 / 20.0  # residual over peak strength in the study
 REPEATS = 3  # of which the fastest counts
 
@@ -56,6 +57,8 @@ def run(folder: Path, quick: bool, tell: Callable[[str], None]) -> Path:
 def in_words(lines: list[str], peer: str, rows: list[Row], examples: str) -> str:
     """Make the text of the report from the lines of its first table, the second, and the rows of the fields."""
     return REPORT.format(
+        source=SLIDE_BY_XSLOPE,
+        bases="\n".join(_base_line(friction, known) for friction, known in BASES),
         cases="\n".join(lines),
         peer=peer,
         scenes="\n".join(_scene_line(rows, scene) for scene in SCENES),
@@ -66,6 +69,7 @@ def in_words(lines: list[str], peer: str, rows: list[Row], examples: str) -> str
     )
 
 
+BASES = ((inf, 1.224), (0.3, 1.10))  # friction, and factor of the short slope by limit analysis
 STRENGTHS = {"peak": 1.0, "mean of peak and residual": 0.5 * (1.0 + RATIO), "residual": RATIO}
 
 
@@ -118,8 +122,15 @@ def _scene_line(rows: list[Row], scene: str) -> str:
     )
 
 
+def _base_line(friction: float, known: float) -> str:
+    section, soil = short_slope()
+    found = critical_surface(sides_of(section._replace(base_friction=friction)), *soil).factor
+    name = "holds" if friction == inf else f"{friction:g}"
+    return f"| {name} | {known:.3f} | {found:.3f} ({100.0 * (found / known - 1.0):+.1f} %) |"
+
+
 def _strength_line(rows: list[Row], name: str, factor: float) -> str:
-    own = [row.factor * factor for row in rows if row.scene == "as it is"]
+    own = [row.factor * factor for row in rows if row.scene == HOLDING]
     return f"| {name} | {sum(own) / len(own):.3f} | {sum(value < 1.0 for value in own) / len(own):.3f} |"
 
 
@@ -132,7 +143,8 @@ def _headline(rows: list[Row]) -> dict[str, str]:
     found = shares(rows, "as it is")
     own = [row for row in rows if row.scene == "as it is" and row.displacement > DISPLACEMENTS[0]]
     still = [row.factor for row in rows if row.scene == "as it is" and row.displacement <= DISPLACEMENTS[0]]
-    equal = float(np.quantile([row.factor for row in rows if row.scene == "as it is"], found["moved"]))
+    held = shares(rows, HOLDING)["moved"]
+    equal = float(np.quantile([row.factor for row in rows if row.scene == HOLDING], held))
     both = [row for row in rows if row.scene == list(SCENES)[-1]]
     stood = [row.factor for row in both if row.factor < 1.0 and row.displacement <= DISPLACEMENTS[0]]
     return {

@@ -38,11 +38,12 @@ def test_a_row_holds_the_factor_where_the_study_asks_for_it():
     assert row["run_out"] == plain["run_out"]
     assert plain_study.with_changes({"quantities.factor_of_safety": False}).physics_hash == plain_study.physics_hash
     assert study().physics_hash != plain_study.physics_hash
-    homogeneous = simulate(prepare(study()), homogeneous=True).quantities["factor_of_safety"]
+    holding = {"boundary.base": {"kind": "fixed"}}
+    homogeneous = simulate(prepare(study(**holding)), homogeneous=True).quantities["factor_of_safety"]
     # 8 kPa on 4 m of 20 kN/m3, 6.12 by Taylor (1937); the crest is as wide as the slope is high, which leaves out the
     # widest surfaces.
     assert homogeneous == pytest.approx(6.12 * 8.0 / 80.0, rel=0.02)
-    other = prepare(study(**{"material.0.strength_convention": "sqrt_3j2"}))
+    other = prepare(study(**holding, **{"material.0.strength_convention": "sqrt_3j2"}))
     lower = simulate(other, homogeneous=True).quantities["factor_of_safety"]
     assert lower == pytest.approx(homogeneous / sqrt(3.0), rel=1e-12)
 
@@ -93,6 +94,15 @@ def test_what_is_elastic_holds_the_surface_up():
     toe = firm.scene.body.outline[:, 1].max() - given["geometry"]["height_m"]
     assert strong.surface[:, 1].min() > toe - 0.25  # half a square of a material point
     assert strong.factor >= weak.factor
+
+
+@pytest.mark.parametrize(
+    ("base", "friction"),
+    [({"kind": "friction", "coefficient": 0.3}, 0.3), ({"kind": "roller"}, 0.0), ({"kind": "fixed"}, np.inf)],
+)
+def test_the_base_of_a_study_is_that_of_its_section(base, friction):
+    prepared = prepare(study(**{"boundary.base": base}))
+    assert section_of(prepared.scene, prepared.study.discretisation.points_per_cell).base_friction == friction
 
 
 def test_an_elastic_soil_has_none():

@@ -185,6 +185,7 @@ def test_no_circle_is_taken_on_which_pull_takes_much_of_the_friction():
     for i, values in enumerate(((1.0, 0.99, 0.14, 5e3, 60e3, 0.2), (4.0, 0.3, 0.95, 200e3, 60e3, 0.2))):
         for name, value in zip(("width", "sine", "cosine", "weight", "cohesion", "friction"), values, strict=True):
             getattr(slices, name)[i] = value
+    slices.limit[:], slices.lever[:] = np.inf, 1.0
     normal = (5e3 - 60e3 * 0.99) / (0.14 + 0.99 * 0.2), (200e3 - 60e3 * 0.3) / (0.95 + 0.3 * 0.2)
     expected = -0.2 * normal[0] / (120e3 + 0.2 * sum(normal))
     assert pull(slices, 2, 1.0) == pytest.approx(expected, rel=1e-12)  # identity
@@ -192,6 +193,52 @@ def test_no_circle_is_taken_on_which_pull_takes_much_of_the_friction():
     assert bishop(slices, 2) == np.inf
     slices.friction[:] = 0.0
     assert bishop(slices, 2) == pytest.approx(120e3 / (5e3 * 0.99 + 200e3 * 0.3), rel=1e-6)  # what ends the iteration
+
+
+def test_arcs_are_cut_off_at_a_base_with_friction_and_run_along_it():
+    (side,) = sides_of(slope(foundation=4.0)._replace(base_friction=0.3))
+    ground, line, drawn = side.ground, Line(np.empty(41), np.empty(41)), 0
+    for share in np.random.default_rng(1).random((1000, 3)):
+        entry, leaving = sorted(share[:2] * ground.along[-1])
+        found = arc(ground, entry, leaving, 1.01 + 0.98 * share[2])
+        if not draw(ground, found, 40, line):
+            continue
+        x, y, radius, *_ = found
+        if y - radius > ground.base - 1e-6:
+            continue
+        drawn += 1
+        on_base = np.abs(line.y - ground.base) < 1e-9
+        assert on_base.sum() >= 2
+        assert np.all(np.diff(np.flatnonzero(on_base)) == 1)
+        assert np.all(np.diff(line.x) > 0.0)
+        np.testing.assert_allclose(np.hypot(line.x - x, line.y - y)[~on_base], radius, rtol=1e-9)
+        assert (line.x[0], line.y[0]) == pytest.approx(place_on_ground(ground, entry), abs=1e-9)
+        assert (line.x[-1], line.y[-1]) == pytest.approx(place_on_ground(ground, leaving), abs=1e-9)
+    assert drawn > 50
+
+
+def test_the_friction_of_the_base_is_not_divided_by_the_factor():
+    slices = make_slices(2)
+    for i, values in enumerate(((0.6, 0.8, 200e3, 60e3, np.inf, 1.0), (0.0, 1.0, 100e3, 60e3, 0.3, 0.7))):
+        for name, value in zip(("sine", "cosine", "weight", "cohesion", "limit", "lever"), values, strict=True):
+            getattr(slices, name)[i] = value
+    slices.friction[:] = 0.0
+    # F = (cohesion + F 0.3 W lever) / driving: 0.3 times 100 kN/m are less than the 60 kN/m of the soil.
+    assert bishop(slices, 2) == pytest.approx(60e3 / (200e3 * 0.6 - 0.3 * 100e3 * 0.7), rel=2e-6)  # end of iteration
+    slices.limit[1] = 3.0  # the soil is weaker
+    assert bishop(slices, 2) == pytest.approx((60e3 + 60e3 * 0.7) / (200e3 * 0.6), rel=2e-6)
+
+
+@pytest.mark.parametrize("method", ["bishop", "spencer", "morgenstern_price"])
+def test_a_slope_is_the_safer_the_rougher_its_base(method):
+    section = slope()
+    soil = uniform(section, 12e3, 0.0 if method == "bishop" else 20.0)
+    factors = [
+        critical_surface(sides_of(section._replace(base_friction=friction)), *soil, method).factor
+        for friction in (0.1, 0.3, 0.6, np.inf)
+    ]
+    assert factors == sorted(factors)
+    assert factors[1] < 0.97 * factors[-1]
 
 
 def test_a_tension_crack_takes_the_surface_s_upper_end():
