@@ -50,7 +50,7 @@ On the short slope (5 m at 45 degrees, 20 kPa, without friction):
 
 Cells of 0.5 m; cohesion lognormal, mean 20 kPa, coefficient of variation 0.25, scales 6 m and 1 m. Bishop's factor of
 the peak strength on circles; a slope has moved where a material point has by more than 0.5 m. The rows are in
-[safety_rows.csv](safety_rows.csv).
+[safety_rows.csv](safety_rows.csv). {origin}
 
 P(factor < 1) = {weak}, P(displacement > 0.5 m) = {moved}. Above 1 and moved: {safe_but_moved} of all; below 1 and still
 there: {weak_but_still}. The highest factor of a slope that moved is {highest_that_moved}, the lowest of one that stood
