@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rfmpm.benchmark.stability.case import SLOPE, random_strength
-from rfmpm.realisation import prepare, simulate
+from rfmpm.realisation import prepare, simulate, stability
 from rfmpm.study import load_study
 
 COUNT, COUNT_OF_OTHERS = 500, 100
@@ -28,6 +28,7 @@ SCENES = {  # what else may decide, taken away
     "strength stays": KEEPS,
     "base holds, strength stays": {**HOLDS, **KEEPS},
 }
+CHECKED = 20  # one in so many of the displacements kept from an earlier run is simulated again
 COLUMNS = ("scene", "index", "factor", "displacement", "failure_volume", "run_out")
 
 
@@ -47,34 +48,60 @@ def study_of(scene: str) -> Any:
     return load_study(STUDY).with_changes(SCENES[scene])
 
 
-def measure(quick: bool, tell: Callable[[str], None]) -> list[Row]:
-    """Simulate every field in every scene.
+def measure(quick: bool, tell: Callable[[str], None], kept: Path | None = None) -> tuple[list[Row], int]:
+    """Find factor and displacement of every field in every scene.
 
     Args:
         quick: a few fields only.
         tell: is told the progress, line by line.
+        kept: rows of an earlier run; their displacements are taken if one in CHECKED, simulated again, is the same.
 
     Returns:
-        The rows.
+        The rows, and how many of the displacements are of the earlier run.
     """
-    rows = []
+    rows, taken, known = [], 0, read_rows(kept) if kept and kept.is_file() else {}
     for number, scene in enumerate(SCENES):
         count = 4 if quick else COUNT_OF_OTHERS if number else COUNT
         prepared = prepare(study_of(scene))
+        old = {index: known[scene, index] for index in range(count) if (scene, index) in known}
+        new = {index: _simulated(prepared, scene, index) for index in list(old)[::CHECKED]}
+        if any(_told(row)[3:] != _told(old[index])[3:] for index, row in new.items()):
+            old = {}
         for index in range(count):
-            outcome = simulate(prepared, index)
-            moved = np.hypot(outcome.points["displacement_x"], outcome.points["displacement_y"])
-            found = outcome.quantities
-            numbers = (found["factor_of_safety"], moved.max(), found["failure_volume"], found["run_out"])
-            rows.append(Row(scene, index, *map(float, numbers)))
+            if index not in new and index in old:
+                new[index] = old[index]._replace(factor=stability(prepared, "bishop", index)[0].factor)
+                taken += 1
+            elif index not in new:
+                new[index] = _simulated(prepared, scene, index)
+        rows += [new[index] for index in range(count)]
         tell(f"{count} fields, {scene}: done")
-    return rows
+    return rows, taken
+
+
+def _simulated(prepared: Any, scene: str, index: int) -> Row:
+    outcome = simulate(prepared, index)
+    moved = np.hypot(outcome.points["displacement_x"], outcome.points["displacement_y"])
+    found = outcome.quantities
+    numbers = (found["factor_of_safety"], moved.max(), found["failure_volume"], found["run_out"])
+    return Row(scene, index, *map(float, numbers))
 
 
 def write_rows(rows: list[Row], path: Path) -> None:
     """Keep the rows as a table of comma-separated values."""
-    lines = [",".join([row.scene.replace(",", ";"), *(f"{value:.6g}" for value in row[1:])]) for row in rows]
+    lines = [",".join(_told(row)) for row in rows]
     path.write_text("\n".join([",".join(COLUMNS), *lines]) + "\n", encoding="utf-8")
+
+
+def read_rows(path: Path) -> dict[tuple[str, int], Row]:
+    """Rows kept by `write_rows`, by scene and index."""
+    lines = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines()[1:]]
+    rows = [Row(scene.replace(";", ","), int(index), *map(float, values)) for scene, index, *values in lines]
+    return {(row.scene, row.index): row for row in rows}
+
+
+def _told(row: Row) -> list[str]:
+    """A row in words: six digits of each number."""
+    return [row.scene.replace(",", ";"), *(f"{value:.6g}" for value in row[1:])]
 
 
 def shares(rows: list[Row], scene: str, least: float = inf) -> dict[str, float]:

@@ -24,8 +24,8 @@ one search on one core, the fastest of three, as beside every realisation of a c
 - Without friction all methods give one factor on one circle. Where cohesion pulls at the upper end of a steep surface,
   Spencer and Morgenstern-Price have no solution in which every slice holds back the one above it; such surfaces are
   left out, and the least of what is left can be too high. At 60 degrees with a friction of 10 degrees no circle whose
-  factor is less than 10 % above the spiral's has one, whatever the ratio of shear to thrust, so that this is no fault
-  of the search. Use Bishop there, which is the default; it leaves circles out on whose base pull takes more than 2 % of
+  factor is less than 10 % above the spiral's has one, and with ratios of shear to thrust down to -1 none less than 7 %,
+  so that this is no fault of the search. Use Bishop there, which is the default; it leaves circles out on whose base pull takes more than 2 % of
   the resistance (with them it came to 2.4 % too low).
 - Surfaces of any shape turn sharply only where the strength along them changes. With sharp corners anywhere
   Morgenstern-Price came to 4.8 % below the spiral and 2.4 and 2.8 % below 1a and 1c, though the line of thrust of
@@ -50,7 +50,7 @@ On the short slope (5 m at 45 degrees, 20 kPa, without friction):
 
 Cells of 0.5 m; cohesion lognormal, mean 20 kPa, coefficient of variation 0.25, scales 6 m and 1 m. Bishop's factor of
 the peak strength on circles; a slope has moved where a material point has by more than 0.5 m. The rows are in
-[safety_rows.csv](safety_rows.csv).
+[safety_rows.csv](safety_rows.csv). {origin}
 
 P(factor < 1) = {weak}, P(displacement > 0.5 m) = {moved}. Above 1 and moved: {safe_but_moved} of all; below 1 and still
 there: {weak_but_still}. The highest factor of a slope that moved is {highest_that_moved}, the lowest of one that stood
