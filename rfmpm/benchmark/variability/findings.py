@@ -215,14 +215,13 @@ def _anisotropy(found: "xr.Dataset", limit: float) -> str:
         f"P(run-out > {limit:g} m) by {span(_estimates(fails), places=2, signed=True)} ({verdict(fails)}) and the mean "
         f"volume by {span(_estimates(volume), 'm³/m', signed=True)} ({verdict(volume)}). The standard deviation of the "
         f"run-out is {span(ratio.values.ravel(), places=1)} times that of the isotropic field "
-        f"({_apart(found, isotropic)}); the characteristic run-out differs by "
-        f"{span(longer.values.ravel(), 'm', signed=True)}."
+        f"({_apart(found, 'run_out_standard_deviation', isotropic)}); the characteristic run-out differs by "
+        f"{span(longer.values.ravel(), 'm', signed=True)} ({_apart(found, 'run_out_characteristic', isotropic)})."
     )
 
 
-def _apart(found: "xr.Dataset", isotropic: float) -> str:
-    """For how many combinations the interval of the standard deviation is beyond that of the isotropic field."""
-    name = "run_out_standard_deviation"
+def _apart(found: "xr.Dataset", name: str, isotropic: float) -> str:
+    """For how many combinations the interval of a statistic is beyond that of the isotropic field."""
     others, there = found.drop_sel(scale_ratio=isotropic), found.sel(scale_ratio=isotropic)
     larger = int((others[f"{name}_lower"] > there[f"{name}_upper"]).sum())
     smaller = int((others[f"{name}_upper"] < there[f"{name}_lower"]).sum())

@@ -163,6 +163,8 @@ def test_every_finding_is_a_sentence(toy):
     assert span([-0.5, 2.0], signed=True) == "-0.5 to +2.0"
 
 
+@pytest.mark.slow  # a dozen campaigns
+@pytest.mark.timeout(600)
 def test_rounds_keep_combinations_equal_and_go_on_where_they_were_stopped(tmp_path, monkeypatch):
     study = load_study(COARSE).with_changes({"study.realisations": 5})
     grid, told = Grid((0.1,), (2.0,), (1.0, 3.0)), []
