@@ -48,6 +48,7 @@ def _findings(
     run_outs = [one.quantities["run_out"] for one in (stiff, middle, soft)]
     sunk = [one.pieces(one.outcome.points)[-1].settlement for one in (stiff, middle, soft)]
     crumbled = _crumbled(middle)
+    cell, ends = finer[4.0, 50.0].study.discretisation.cell_m, _ends(finer[4.0, 50.0])
     ridges = [ridge_count(runs[4.0, modulus]) for modulus in MODULI]
     return [
         Finding(
@@ -73,7 +74,7 @@ def _findings(
         Finding(
             "4 kPa: retrogression until the boundary stops it",
             "the failure reaches the boundary behind the crest",
-            f"{_cuts(soft)}; ends {soft.quantities['retrogression_distance']:.1f} m back",
+            f"{_cuts(soft)}; ends {_ends(soft):.1f} m back; on cells of {cell:g} m {ends:.1f} m back",
             bool(soft.quantities["retrogression_censored"]),
         ),
         Finding(
@@ -83,9 +84,13 @@ def _findings(
             min(ridges) >= 2,
             "" if min(ridges) >= 2 else DROWNED,
         ),
-        *crests.findings(reaches, half_step),
+        *crests.findings(reaches, half_step, [_ends(finer[4.0, modulus]) for modulus in MODULI]),
         _steepened(soft),
     ]
+
+
+def _ends(own: Run) -> float:
+    return own.quantities["retrogression_distance"]
 
 
 def _one_circle(own: Run, finer: Run, stronger: Run) -> Finding:
