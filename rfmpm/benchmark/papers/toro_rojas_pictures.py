@@ -34,11 +34,8 @@ def draw_studies(found: Studies, path: Path) -> None:
     with drawing():
         figure = new_figure(WIDTH, 3.0)
         held, reach, travel = figure.subplots(1, 3)
-        labels = {"quadratic_bspline": ("quadratic B-splines", BLUE), "linear": ("4-node squares", ORANGE)}
-        for shape, (label, colour) in labels.items():
-            held.plot(
-                list(found.held), [one[shape] for one in found.held.values()], "o-", ms=4, color=colour, label=label
-            )
+        for shape, colour in (("quadratic_bspline", BLUE), ("linear", ORANGE)):
+            held.plot(list(found.held), [one[shape] for one in found.held.values()], "o-", ms=4, color=colour)
         for level, words in ((PUBLISHED, "published"), (EQUILIBRIUM, "limit equilibrium")):
             held.axhline(level, color=GREY, lw=1.0, ls="--")
             held.text(max(found.held), level + 0.02, words, ha="right", fontsize=8)

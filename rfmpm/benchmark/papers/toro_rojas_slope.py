@@ -109,9 +109,9 @@ SLIDE = (
     "deeper has not moved."
 )
 STUDIES = (
-    "Left: the cohesion from which the slope holds on cells of a size, over the published one and that of limit "
-    "equilibrium. Middle: run-out of the slide at 0.1 kPa. Right: mean travel of all soil against cohesion, and what "
-    "Young's modulus makes of it."
+    "Left: the cohesion from which the slope holds on cells of a size, with quadratic B-splines (blue) and 4-node "
+    "squares (orange), over the published one and that of limit equilibrium. Middle: run-out of the slide at 0.1 kPa. "
+    "Right: mean travel of all soil against cohesion, and what Young's modulus makes of it."
 )
 HISTORIES = (
     "Displacement, speed and acceleration at crown, centre and foot of the face; full lines for a Young's modulus of "

@@ -39,7 +39,7 @@ def test_linear_shapes_oscillate_where_points_cross_cells_and_splines_do_not():
     found = {}
     for shape in ("linear", "quadratic_bspline"):
         points = settled({SHAPE: shape, "discretisation.cell_m": 0.5, "material.0.youngs_modulus_kpa": 150.0})
-        assert np.hypot(points["displacement_x"], points["displacement_y"]).max() > 1.0  # two cells
+        assert np.hypot(points["displacement_x"], points["displacement_y"]).max() > 0.75  # a cell and a half
         found[shape] = {
             name: oscillation(points["x"], points["y"], values) for name, values in components(points).items()
         }
