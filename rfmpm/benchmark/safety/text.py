@@ -25,8 +25,8 @@ one search on one core, the fastest of three, as beside every realisation of a c
   Spencer and Morgenstern-Price have no solution in which every slice holds back the one above it; such surfaces are
   left out, and the least of what is left can be too high. At 60 degrees with a friction of 10 degrees no circle whose
   factor is less than 10 % above the spiral's has one, and with ratios of shear to thrust down to -1 none less than 7 %,
-  so that this is no fault of the search. Use Bishop there, which is the default; it leaves circles out on whose base pull takes more than 2 % of
-  the resistance (with them it came to 2.4 % too low).
+  so that this is no fault of the search. Use Bishop there, which is the default; it leaves circles out on whose base
+  pull takes more than 2 % of the resistance (with them it came to 2.4 % too low).
 - Surfaces of any shape turn sharply only where the strength along them changes. With sharp corners anywhere
   Morgenstern-Price came to 4.8 % below the spiral and 2.4 and 2.8 % below 1a and 1c, though the line of thrust of
   these surfaces is no worse than that of circles: to ask that it stay inside the mass leaves 1a and 1c as they are and
