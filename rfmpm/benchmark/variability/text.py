@@ -3,8 +3,8 @@
 PAGE = """\
 # The short slope over variation, vertical scale and anisotropy of its strength
 
-Made by `{command}`, which continues where it was stopped; rows and summary are in
-[{name}.nc]({name}.nc).
+Made by `{command}`, which continues where it was stopped. Rows and summary
+are in [{name}.nc]({name}.nc).
 
 Slope, softening and cells are those of the main study (`configs/{name}.toml`): 5 m high, 45 degrees, cells of
 {cell:g} m. Peak cohesion is lognormal with a mean of {mean:g} kPa, the residual {residual:g} / {mean:g} of the peak at
@@ -17,7 +17,8 @@ Carlo. {hours} of one core, {per:.2f} s a realisation on a shared machine (15-mi
 How to read it:
 
 - Intervals are 95 %: Student's t for means, Bonett's for standard deviations, order statistics for quantiles, Clopper
-  and Pearson's for probabilities.
+  and Pearson's for probabilities. The upper end of a 95 % quantile takes 72 realisations; it is unbounded ("?" in the
+  map) with fewer.
 - Realisation i has the same random numbers in every combination, so differences between combinations are taken pair by
   pair (Student's t; Agresti and Min for probabilities). The run-outs of such pairs, isotropic against not, correlate by
   {correlation} (median).
