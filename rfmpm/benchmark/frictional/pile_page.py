@@ -6,6 +6,7 @@ import numpy as np
 
 from rfmpm.benchmark.frictional import bars
 from rfmpm.benchmark.frictional.cases import CELL, Section, collapse, finding
+from rfmpm.benchmark.frictional.rates import SLOPE, inertial_number
 from rfmpm.benchmark.markdown import table
 from rfmpm.report.slope_figures import WIDTH
 from rfmpm.report.style import BLUE, GREY, ORANGE, drawing, new_figure, save
@@ -14,6 +15,8 @@ CELLS, MIDDLE = (0.01, 0.005, 0.0025), 0.005  # [m]
 GIVEN = 19.8  # angle of friction [degrees]
 SHEAR_BOX = float(np.degrees(np.arcsin(np.tan(np.radians(GIVEN)))))  # if that is the ratio of stresses in a shear box
 LAW, FRICTION = "material.0.law", "material.0.friction_angle_deg"
+RATIO = float(np.tan(np.radians(GIVEN)))
+CONE = float(np.degrees(np.arcsin(3.0 * RATIO / np.sqrt(9.0 + 12.0 * RATIO**2))))  # of the same slope at no dilation
 SERIES = (("mohr_coulomb", GIVEN), ("drucker_prager", GIVEN), ("mohr_coulomb", SHEAR_BOX))
 SOFT = {"material.0.poissons_ratio": 0.4, "material.0.youngs_modulus_kpa": 420.0}  # of the same bulk modulus
 VARIATIONS = {
@@ -21,6 +24,10 @@ VARIATIONS = {
     "Drucker-Prager": {LAW: "drucker_prager"},
     "Poisson's ratio 0.4: at rest within yield": SOFT,
     "ten times as stiff": {"material.0.youngs_modulus_kpa": 8400.0},
+    "the cone of Bui et al., matched for dilation as of friction": {LAW: "drucker_prager", FRICTION: CONE},
+    "wall with the friction of the soil": {"boundary.sides": {"kind": "friction", "coefficient": RATIO}},
+    "base with the friction of the soil": {"boundary.base": {"kind": "friction", "coefficient": RATIO}},
+    "no numerical dissipation asked for": {"discretisation.dissipation_time_s": float("inf")},
     "rough wall": {"boundary.sides": {"kind": "fixed"}},
     "dilation 2 degrees": {"material.0.dilation_angle_deg": 2.0},
     "GIMP": {"discretisation.shape": "gimp"},
@@ -51,12 +58,15 @@ def section(folder: Path) -> Section:
         values = [*(f"{e:.1f}" for e in _errors(outcome, MIDDLE)), *(f"{f:.3f}" for f in _fronts(outcome, MIDDLE))]
         varied.append(f"{name} | {' | '.join(values)}")
     _draw(points, folder / "frictional_bars.png")
+    number = inertial_number(bars.NAME, MIDDLE)
     ours, other = (("mohr_coulomb", friction, CELLS[-1]) for friction in (GIVEN, SHEAR_BOX))
     read = " | ".join([*(f"{name} [mm]" for name in bars.READINGS), "front, a bar thick [m]", "front of 99.5 % [m]"])
     return Section(
         TEXT.format(
             rows=table(f"law | friction [degrees] | cell [mm] | {read} | numerical dissipation", rows),
             varied=table(f"cells of 5 mm | {read}", varied),
+            number=f"{number:.3f}",
+            angle=f"{np.degrees(np.arcsin(np.sin(np.radians(GIVEN)) + SLOPE * number)):.1f}",
         ),
         _findings(errors[ours], errors[other], fronts[ours], fronts[other]),
     )
@@ -138,5 +148,10 @@ What governs it:
   4-node squares come closer on these cells, with a shorter front; no shape comes within 1.7 mm. Were 19.8 degrees the
   ratio of stresses in a shear box, in which soil without dilation shows tan = sin(phi), phi would be 21.1 degrees.
   Friction that rises with the rate of shear would add some more; the published law has none, nor has ours.
+- Of what the experiment leaves open, a base or a wall that slips, and the cone of Bui et al., take the pile further
+  off; the gate is not modelled. Bars that are sheared fast show more friction, which the law leaves out: the inertial
+  number of our collapse is {number} in the mean over the work of shear, and discs gain about as much in the ratio of
+  shear to normal stress (da Cruz et al. 2005), which makes 19.8 degrees {angle}: near the 22.5 degrees that come
+  closest. That is an estimate, and as good an explanation as was found.
 - So the surface is missed, by every reading. The study keeps 19.8 degrees.
 """

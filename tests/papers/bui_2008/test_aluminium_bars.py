@@ -21,6 +21,7 @@ import pytest
 
 from rfmpm.benchmark.frictional import bars
 from rfmpm.benchmark.frictional.cases import CELL, collapse
+from rfmpm.benchmark.frictional.rates import inertial_number
 
 COARSE, MIDDLE, FINE = 0.01, 0.005, 0.0025  # [m]
 TWENTIETH = 5e-3  # of the height [m]
@@ -74,6 +75,11 @@ def test_more_friction_leaves_the_pile_steeper():
         for angle in (19.8, 25.0)
     )
     assert firm > soft + 1e-3  # the reading error
+
+
+def test_collapse_is_a_dense_flow_whose_inertial_number_counts():
+    # Regression: 0.04 on cells of 5 mm; quasi-static below 0.001, a gas of bars above 0.1 or so.
+    assert 0.02 < inertial_number(bars.NAME, COARSE) < 0.08
 
 
 @pytest.mark.slow
