@@ -151,6 +151,14 @@ def test_measures_of_a_layer_are_those_of_its_plane():
     )  # points: 0.125 of 4 m
 
 
+def test_a_cell_without_points_is_no_gap_in_the_ground():
+    state = retrogressive(0.5)
+    kept = np.floor(state.x / state.cell) != 16
+    per_point = ("x", "y", "x_initial", "y_initial", "volume", "volume_initial", "plastic_strain")
+    assert not kept.all()
+    assert shape(replace(state, **{name: getattr(state, name)[kept] for name in per_point})).ridges == 0
+
+
 ARC = Shape(0.3, 1, 1.0, 0.8, length=10.0, depth=2.0, thickness=2.0, straight=0.5, slope=30.0, ridges=1)
 PLANE = ARC._replace(depth=0.5, straight=0.9)
 RIDGED = ARC._replace(blocks=3, main_block=0.5, slope=5.0, ridges=3)
