@@ -30,7 +30,7 @@ SPREAD_SLOPE = 8.0  # steepest band below a spread [degrees]
 
 DEFINITIONS = {
     "no_failure": "no soil moves further than the threshold of failure",
-    "rotational": "one mass turns on a curved slip surface",
+    "rotational": f"one mass, not down a plane: the largest block has {MAIN_BLOCK:g} or more of all, or there is none",
     "translational": (
         f"the mass goes down together on a plane: {STRAIGHT_SHARE:g} of the slip surface lies within "
         f"{STRAIGHT_WIDTH:g} of its length from one line, its depth is below {PLANE_DEPTH:g} of its length, and the "

@@ -27,8 +27,8 @@ def standard_deviation(values, confidence: float = 0.95) -> Estimate:
     method, note = "Bonett", f"{failed.sum()} failed of {failed.size} left out" if failed.any() else ""
     if n < FEWEST:
         return Estimate(value, 0.0, float("inf"), confidence, n, method, note)
-    if value == 0.0:
-        return Estimate(value, value, value, confidence, n, method, note)
+    if np.ptp(completed) == 0.0:
+        return Estimate(0.0, 0.0, 0.0, confidence, n, method, note)
     z = float(ndtri(0.5 + confidence / 2.0))
     trimmed = _trimmed_mean(completed, 0.5 / np.sqrt(n - 4))
     kurtosis = n * np.sum((completed - trimmed) ** 4) / np.sum((completed - completed.mean()) ** 2) ** 2

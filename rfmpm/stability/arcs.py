@@ -86,7 +86,8 @@ def draw(ground, found, count, line):
             else:
                 below = angle
         start = below
-    if ground.base_friction < np.inf and y - radius < ground.base - ALMOST * radius:
+    lowest = y - radius * np.cos(min(end, 0.0))  # where the arc leaves the ground if it still descends there
+    if ground.base_friction < np.inf and lowest < ground.base - ALMOST * radius:
         return draw_cut_off(ground, x, y, radius, start, end, count, line)
     for i in range(count + 1):
         angle = start + (end - start) * i / count

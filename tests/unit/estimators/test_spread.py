@@ -46,7 +46,7 @@ def test_scales_with_the_values_and_ignores_their_origin():
 
 @pytest.mark.parametrize(
     ("values", "expected"),
-    [([1.0, 2.0, 3.0], (1.0, 0.0, np.inf)), ([4.0] * 10, (0.0, 0.0, 0.0)), ([3.0], (np.nan, 0.0, np.inf))],
+    [([1.0, 2.0, 3.0], (1.0, 0.0, np.inf)), ([1e7 / 7.0] * 11, (0.0, 0.0, 0.0)), ([3.0], (np.nan, 0.0, np.inf))],
 )
 def test_too_few_or_equal_values(values, expected):
     found = standard_deviation(values)

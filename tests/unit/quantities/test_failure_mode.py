@@ -122,6 +122,10 @@ def test_each_kind_on_cells_of_two_sizes(toy, cell):
     assert name_of(toy(cell)) == toy.__name__
 
 
+def test_a_definition_has_the_numbers_that_decide():
+    assert [kind for kind in limits.ORDER[1:] if not any(sign.isdigit() for sign in limits.DEFINITIONS[kind])] == []
+
+
 def test_every_kind_has_a_toy_a_definition_and_a_place_in_the_order():
     assert {toy.__name__ for toy in TOYS} == set(MODES) == set(limits.DEFINITIONS) == set(limits.ORDER)
 

@@ -241,6 +241,16 @@ def test_a_slope_is_the_safer_the_rougher_its_base(method):
     assert factors[1] < 0.97 * factors[-1]
 
 
+def test_arcs_that_descend_to_the_toe_are_not_cut_off():
+    # They meet the base in one point, at which nothing slides along it: a steep face is as safe on any base.
+    section, strength = slope(90.0), (10e3, 30.0)
+    rough, smooth = (
+        critical_surface(sides_of(section._replace(base_friction=friction)), *uniform(section, *strength)).factor
+        for friction in (np.inf, 0.3)
+    )
+    assert smooth == pytest.approx(rough, rel=0.005)  # to which the search finds the least factor
+
+
 def test_a_tension_crack_takes_the_surface_s_upper_end():
     section = slope(45.0)
     whole = critical_surface(sides_of(section), *uniform(section))
