@@ -3,10 +3,12 @@
 import re
 import unicodedata
 from html import unescape
+from xml.etree import ElementTree
 
 from docutils import nodes
 from latex2mathml.converter import convert
 
+SPACE = "http://www.w3.org/1998/Math/MathML"
 VARIANT = re.compile(r'<mi mathvariant="(bold|bold-italic|script|sans-serif|double-struck)">([^<]+)</mi>')
 
 
@@ -31,7 +33,19 @@ def _block(translator, node):
 def mathml(tex: str, display: str) -> str:
     """An equation with letters in the characters of their style: browsers read no style of MathML but upright."""
     equation = convert(tex, display=display).replace("<mo>&#x0007C;</mo>", '<mo stretchy="false">&#x0007C;</mo>')
-    return VARIANT.sub(lambda found: f"<mi>{_styled(found[1], found[2])}</mi>", equation)
+    return VARIANT.sub(lambda found: f"<mi>{_styled(found[1], found[2])}</mi>", _overlined(equation))
+
+
+def _overlined(equation: str) -> str:
+    """The equation with each overline as a border of what is below it: as a character few fonts let it grow."""
+    ElementTree.register_namespace("", SPACE)
+    tree = ElementTree.fromstring(equation)
+    for over in tree.iter(f"{{{SPACE}}}mover"):
+        if over[1].text == "\N{HORIZONTAL BAR}":
+            over.tag = f"{{{SPACE}}}mrow"
+            over.set("class", "overline")
+            over.remove(over[1])
+    return ElementTree.tostring(tree, encoding="unicode")
 
 
 def _styled(style: str, text: str) -> str:

@@ -16,6 +16,8 @@ MODES = (  # the codes in results are the places in this list
 
 FLOW_STRAIN = 1.0  # plastic strain from which soil has lost its shape: it is several times what softens it [-]
 FLOWED_SHARE = 0.8  # of the failed volume, from which the mass flowed: blocks are the exception [-]
+KEPT_SHARE = 0.125  # of the failed volume in blocks, below which these are crumbs in what was sheared [-]
+FLOWED_AMONG_CRUMBS = 0.5  # of the failed volume, from which a mass of crumbs flowed: most of it did [-]
 STRAIGHT_WIDTH = 0.025  # distance from a line within which a slip surface is straight, over its length [-]
 STRAIGHT_SHARE = 0.7  # of the slip surface's length from which it is a plane; of an arc of 60 degrees it is 0.61 [-]
 PLANE_DEPTH = 0.15  # depth over length below which it is one; slides that rotate have 0.15 to 0.33 [-]
@@ -40,7 +42,10 @@ DEFINITIONS = {
         f"translational and thin: the mean thickness is below {THIN_FOR_LENGTH:g} of the length or "
         f"{THIN_FOR_HEIGHT:g} of the height of the ground"
     ),
-    "earthflow": f"{FLOWED_SHARE:g} or more of the failed mass has a plastic strain of {FLOW_STRAIN:g} or more",
+    "earthflow": (
+        f"{FLOWED_SHARE:g} or more of the failed mass has a plastic strain of {FLOW_STRAIN:g} or more; "
+        f"{FLOWED_AMONG_CRUMBS:g} where less than {KEPT_SHARE:g} of it is in blocks"
+    ),
     "retrogressive": f"several slides, one behind the other: the largest block has less than {MAIN_BLOCK:g} of all",
     "spread": (
         f"{SPREAD_BLOCKS} or more blocks and {SPREAD_RIDGES} or more ridges with subsided ground between them, by "

@@ -52,7 +52,7 @@ def exceedance_difference(
     centre = (gained - lost) / total
     variance = (gained + lost + 0.5 * PSEUDO_PAIRS) / total - centre**2
     half = float(ndtri(0.5 + confidence / 2.0)) * np.sqrt(variance / total)
-    lower, upper = (float(np.clip(bound, -1.0, 1.0)) for bound in (centre - half, centre + half))
+    lower, upper = (float(np.clip(bound, -1.0, 1.0)) for bound in (centre - half, centre + half)) if n else (-1.0, 1.0)
     failed = is_whole.size - n
     note = f"{failed} pairs of {is_whole.size} with a failed realisation left out" if failed else ""
     return Estimate((gained - lost) / n if n else float("nan"), lower, upper, confidence, n, "Agresti and Min", note)

@@ -16,6 +16,7 @@ class Shape(NamedTuple):
     """What a failed mass looks like."""
 
     flowed: float  # share of it that lost its shape [-]
+    kept: float  # share of it that is in blocks [-]
     blocks: int
     main_block: float  # area of the largest over that of all; 1 without any [-]
     together: float  # least over largest displacement of its blocks, as quartiles of their volume; 1 without any [-]
@@ -52,7 +53,8 @@ def kind_of(found: Shape, height: float) -> str:
     Source: Hungr, Leroueil and Picarelli (2014); depth over length: Skempton and Hutchinson (1969), Cruden and Varnes
     (1996); horsts and grabens of spreads: Locat et al. (2011).
     """
-    if found.flowed >= limits.FLOWED_SHARE:
+    is_crumbs = found.kept < limits.KEPT_SHARE and found.flowed >= limits.FLOWED_AMONG_CRUMBS
+    if found.flowed >= limits.FLOWED_SHARE or is_crumbs:
         return "earthflow"
     is_plane = found.straight >= limits.STRAIGHT_SHARE and found.depth < limits.PLANE_DEPTH * found.length
     if is_plane and found.together >= limits.TOGETHER:
@@ -78,6 +80,7 @@ def shape(state: FinalState) -> Shape:
     sheared = failed[state.plastic_strain[failed] >= limits.FLOW_STRAIN]
     return Shape(
         flowed=float(volume[sheared].sum() / volume[failed].sum()),
+        kept=float(areas.sum() / volume[failed].sum()),
         blocks=len(areas),
         main_block=float(areas.max() / areas.sum()) if len(areas) else 1.0,
         together=_together(state, failed[state.plastic_strain[failed] < state.block_plastic_strain]),

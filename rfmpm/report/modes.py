@@ -19,7 +19,7 @@ NAMES = {
 }
 MEANINGS = {
     "no_failure": "no soil moves further than the threshold of failure",
-    "rotational": "one mass turns on a curved slip surface",
+    "rotational": "one mass stays together, on no plane: as a rule it turns on a curved slip surface",
     "translational": "one mass goes down together on a plane, even if it breaks up on the way",
     "superficial": "a thin skin goes down on a plane",
     "earthflow": "nearly all that fails loses its shape",

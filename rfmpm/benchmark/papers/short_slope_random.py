@@ -165,7 +165,8 @@ arc: it bends through weak soil (blue in the field) and around strong soil, and 
 an eighth weaker than the body. It is complete sooner, and where two weak ways compete there are two bands. The first
 block then leaves a face that stands alone, and further bands cut the crest behind, often up to the boundary. With the
 larger scale a weak or a strong zone is as large as a block, so that realisations differ more, in how far they run out
-and in how far back they fail: some end with their first block."""
+and in how far back they fail: some end with their first block, and in some a second band is there before the first
+block has sunk, which is not counted as the three stages."""
 FEWER = "in the others the soil behind the first block is strong enough to stand, or it all goes at once."
 
 CASE = Case(

@@ -150,12 +150,12 @@ FINER_CAPTION = (
 )
 HEAD = "cell [m] | time [s] | elastic | softening | residual | elastic unloading"
 WHY = """The elastic stresses of a layer of this stiffness lie beyond the strength below a depth of about 3.4 m (weight
-times depth times 1 - nu / (1 - nu), over the square root of 3, against 20 kPa). So the lower soil yields a little as
-soon as it is let go, and then stands below its yield surface: most of what is called unloading behind the slide, at all
-times. The rest of the crest has never yielded. The slide has its shearing in a band that starts at the toe, where it
-has come down to the residual strength first; soil softens where the band bends up to the crest, along its borders, and
-in the toe of the slide, which is pressed flat. As the slide leaves, the face behind it is steeper than before and has
-lost its support: the soil behind and below it yields again, along the next band. At rest nothing flows: blocks that
+times depth times (1 - 2 nu) / (1 - nu), over the square root of 3, against 20 kPa). So the lower soil yields a little
+as soon as it is let go, and then stands below its yield surface: most of what is called unloading behind the slide, at
+all times. The rest of the crest has never yielded. The slide has its shearing in a band that starts at the toe, where
+it has come down to the residual strength first; soil softens where the band bends up to the crest, along its borders,
+and in the toe of the slide, which is pressed flat. As the slide leaves, the face behind it is steeper than before and
+has lost its support: the soil behind and below it yields again, along the next band. At rest nothing flows: blocks that
 have hardly been sheared lie in soil at its residual strength, and what remains elastic are the cores of blocks."""
 MERGED = (
     "the two bands are hardly more than a metre, four or five cells, apart, and part the crest together; on cells half "

@@ -59,7 +59,8 @@ def verdict(contrasts: Sequence[Contrast], more: str = "larger", less: str = "sm
     total = len(contrasts)
     if up + down == 0:
         return f"none of {total} secure"
-    return f"of {total}, {up} securely {more}, {down} securely {less}, {total - up - down} undecided"
+    counts = [f"{count} securely {word}" for count, word in ((up, more), (down, less)) if count]
+    return f"of {total}, {', '.join(counts)}, {total - up - down} undecided"
 
 
 def crest_lost(cell: "xr.Dataset") -> Estimate:
@@ -88,22 +89,22 @@ def _uniform(found: "xr.Dataset") -> str:
 
 def _on_average(found: "xr.Dataset", limit: float) -> str:
     columns = effects(found, limit)
-    parts = [f"{title}: {_secure(contrasts)}" for title, contrasts in columns.items()]
+    parts = [f"in {title}, {_secure(contrasts)}" for title, contrasts in columns.items()]
     return (
-        "**What is secure on average over the other two dimensions**, against the smallest variation, the smallest "
-        f"vertical scale and a ratio of {float(found['scale_ratio'][0]):g} (all effects and intervals are in the table "
-        f"below): {'; '.join(parts)}."
+        "**On average over the other two dimensions.** Against the smallest variation, the smallest vertical scale and "
+        f"a ratio of {float(found['scale_ratio'][0]):g}, these differences are secure (each with its interval in the "
+        f"table below): {'; '.join(parts)}."
     )
 
 
 def _secure(contrasts: Sequence[Contrast]) -> str:
-    named = [
-        f"{WORDS[name].removesuffix(' [m]')} {value:g} {each.estimate.value:+.2f}"
-        for each in contrasts
-        for name, value in each.here.items()
-        if each.is_secure
-    ]
-    return ", ".join(named) or "none"
+    """Name the dimensions with secure differences, and the range of these."""
+    secure: dict[str, list[float]] = {}
+    for each in contrasts:
+        (name,) = each.here
+        if each.is_secure:
+            secure.setdefault(WORDS[name].removesuffix(" [m]"), []).append(each.estimate.value)
+    return ", ".join(f"{word} {span(values, places=2, signed=True)}" for word, values in secure.items()) or "none"
 
 
 def _mean(found: "xr.Dataset") -> str:
@@ -136,8 +137,10 @@ def _two_kinds(found: "xr.Dataset") -> str:
     for variation in found["coefficient_of_variation"].values:
         cells = list(each_cell(found.sel(coefficient_of_variation=[variation])))
         stand = [100.0 * standing(cell) / cell.sizes["realisation"] for cell in cells]
-        runs = [values[values > 0.0].mean() for values in (outcomes(cell, "run_out")[0] for cell in cells)]
-        parts.append(f"{variation:g}: {span(stand, '%', 0)} stand, the others run {span(runs, 'm')} on average")
+        moved = [values[values > 0.0] for values in (outcomes(cell, "run_out")[0] for cell in cells)]
+        runs = [values.mean() for values in moved if values.size]
+        others = f"the others run {span(runs, 'm')} on average" if runs else "no other is left"
+        parts.append(f"{variation:g}: {span(stand, '%', 0)} stand, {others}")
     return (
         "**Two effects that oppose each other.** Slopes that stand shorten the mean, long run-outs of the others "
         f"lengthen it. At a variation of {'; at '.join(parts)}."
@@ -183,12 +186,17 @@ def _cautious(found: "xr.Dataset") -> str:
     further = int((found["run_out"] > cautious).sum())
     is_known = np.isfinite(found["run_out_characteristic_upper"])
     safe = int(((cautious > found["run_out_characteristic_upper"]) & is_known).sum())
+    beyond = (
+        f"and beyond the upper end of its 95 % interval in {safe} of {above.size} combinations{_unbounded(is_known)}"
+        if is_known.any()
+        else f"whose 95 % interval has no upper end with {found.sizes['realisation']} realisations"
+    )
     return (
         "**A cautious strength everywhere.** With the strength that 5 % of the soil falls below "
         f"({_listed(strengths)} kPa at a variation of {_listed(found['coefficient_of_variation'].values, '{:g}')}) the "
         f"uniform slope runs {_listed(cautious.values)} m. That is {span(above.values.ravel(), 'm', signed=True)} "
-        f"against the characteristic run-out, and beyond the upper end of its 95 % interval in {safe} of {above.size} "
-        f"combinations{_unbounded(is_known)}; {further} of the {found['run_out'].size} realisations run further."
+        f"against the characteristic run-out, {beyond}; {further or 'none'} of the {found['run_out'].size} "
+        f"realisations {'run' if further > 1 else 'runs'} further."
     )
 
 
@@ -225,6 +233,8 @@ def _apart(found: "xr.Dataset", name: str, isotropic: float) -> str:
     others, there = found.drop_sel(scale_ratio=isotropic), found.sel(scale_ratio=isotropic)
     larger = int((others[f"{name}_lower"] > there[f"{name}_upper"]).sum())
     smaller = int((others[f"{name}_upper"] < there[f"{name}_lower"]).sum())
+    if larger + smaller == 0:
+        return f"intervals apart in none of {others[name].size}"
     return f"intervals apart in {larger + smaller} of {others[name].size}, {larger} of them larger"
 
 
@@ -237,8 +247,8 @@ def _vertical_scale(found: "xr.Dataset", limit: float) -> str:
     run_out = against(found, "vertical_scale", shortest, mean_of("run_out"))
     fails = against(found, "vertical_scale", shortest, probability_beyond("run_out", limit))
     return (
-        "**Vertical scale.** At the same ratio, so with both scales growing, longer vertical scales change the mean "
-        f"run-out by {span(_estimates(run_out), 'm', signed=True)} against {shortest:g} m ({verdict(run_out)}) and "
+        f"**Vertical scale.** At the same ratio, so with both scales growing, vertical scales above {shortest:g} m "
+        f"change the mean run-out by {span(_estimates(run_out), 'm', signed=True)} ({verdict(run_out)}) and "
         f"P(run-out > {limit:g} m) by {span(_estimates(fails), places=2, signed=True)} ({verdict(fails)})."
     )
 
@@ -255,6 +265,6 @@ def _undecided(found: "xr.Dataset", limit: float) -> str:
         f"of P(run-out > {limit:g} m) up to {float(width.max()):.2f}: smaller effects are not seen. Where fewer than "
         f"{SETTLED} slopes stand (or fail), in {few} combinations, mean and standard deviation hang on these few; "
         f"where none does, in {none}, an interval of mean or standard deviation knows nothing of the rare ones. "
-        f"Probabilities much below 1/{n} are beyond this study. What the cells err is in no interval "
+        f"Probabilities much below 1/{n} are beyond this study. The error of the cells is in no interval "
         "([slope_error.md](slope_error.md))."
     )

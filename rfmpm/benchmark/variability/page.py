@@ -74,7 +74,7 @@ def _text(found: "xr.Dataset", study, limit: float) -> str:
         scales=_listed(found, "vertical_scale"),
         ratios=_listed(found, "scale_ratio"),
         lost=f"{100.0 * lost / total:.0f} %",
-        far=far,
+        far=f"The far wall bounded the run-out of {far}." if far else "No run-out met the far wall.",
         correlation=f"{np.median(paired):.2f}" if paired else "unknown",
         limit=limit,
         findings="\n".join(f"- {finding}" for finding in findings(found, limit)),

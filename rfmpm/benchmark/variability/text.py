@@ -26,7 +26,7 @@ How to read it:
   differences of its column (Bonferroni: less than one false alarm in twenty such columns).
 - The crest is {crest:g} m wide. In {lost} of the realisations the failure takes all of it: retrogression and volume are
   lower bounds there. They count as exceeding every threshold; means and standard deviations take them at their value.
-  The far wall bounded the run-out of {far}.
+  {far}
 
 ## What it means for a designer
 

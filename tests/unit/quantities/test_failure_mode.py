@@ -163,7 +163,7 @@ def test_a_cell_without_points_is_no_gap_in_the_ground():
     assert shape(replace(state, **{name: getattr(state, name)[kept] for name in per_point})).ridges == 0
 
 
-ARC = Shape(0.3, 1, 1.0, 0.8, length=10.0, depth=2.0, thickness=2.0, straight=0.5, slope=30.0, ridges=1)
+ARC = Shape(0.3, 0.7, 1, 1.0, 0.8, length=10.0, depth=2.0, thickness=2.0, straight=0.5, slope=30.0, ridges=1)
 PLANE = ARC._replace(depth=0.5, straight=0.9)
 RIDGED = ARC._replace(blocks=3, main_block=0.5, slope=5.0, ridges=3)
 
@@ -172,6 +172,8 @@ RIDGED = ARC._replace(blocks=3, main_block=0.5, slope=5.0, ridges=3)
     ("found", "changes", "kinds"),
     [
         (ARC, {"flowed": (0.79, 0.8)}, ("rotational", "earthflow")),
+        (ARC._replace(kept=0.12), {"flowed": (0.49, 0.5)}, ("rotational", "earthflow")),
+        (ARC._replace(flowed=0.7), {"kept": (0.125, 0.124)}, ("rotational", "earthflow")),
         (PLANE, {"straight": (0.69, 0.7)}, ("rotational", "translational")),
         (PLANE, {"depth": (1.5, 1.49)}, ("rotational", "translational")),
         (PLANE, {"together": (0.49, 0.5)}, ("rotational", "translational")),
