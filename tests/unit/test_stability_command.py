@@ -34,7 +34,7 @@ def test_it_says_factor_surface_and_time_after_the_picture(tmp_path):
         "enters at",
         "leaves at",
         "lowest point",
-        "time",
+        "time, compiling included",
     ]
 
 
