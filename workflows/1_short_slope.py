@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[1]
 REPORTS = ROOT / "reports"
 COMMAND = "python workflows/1_short_slope.py"
 REPEATS = 8
-PICTURED = 6  # realisation at the top of the README: a retrogressive slide in which blocks can be told apart
+PICTURED = 6  # realisation at the top of the README: a slide that took the whole crest
 
 
 def cost(study) -> str:
