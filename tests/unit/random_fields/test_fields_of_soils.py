@@ -5,6 +5,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+from three_soils import CLAY, FIELD, ROCK
+from three_soils import SAND as STEADY_SAND
 
 import rfmpm
 from rfmpm import realisation
@@ -12,42 +14,8 @@ from rfmpm.field_influence import field_influence
 from rfmpm.random_fields import properties
 from rfmpm.random_fields.principal_components import principal_components
 
-FIELD = {
-    "distribution": "lognormal",
-    "coefficient_of_variation": 0.25,
-    "correlation": "markov_separable",
-    "scale_of_fluctuation_h_m": 6.0,
-    "scale_of_fluctuation_v_m": 1.0,
-}
+SAND = STEADY_SAND | {"residual_cohesion_kpa": 1.0, "residual_plastic_strain": 0.5}
 ROUGH = FIELD | {"coefficient_of_variation": 0.5, "correlation": "gaussian", "scale_of_fluctuation_h_m": 2.0}
-CLAY = {
-    "name": "clay",
-    "law": "von_mises",
-    "unit_weight_kn_m3": 20.0,
-    "youngs_modulus_kpa": 1000.0,
-    "poissons_ratio": 0.33,
-    "cohesion_kpa": 17.0,
-    "residual_cohesion_kpa": 4.0,
-    "softening_modulus_kpa": 50.0,
-}
-SAND = {
-    "name": "sand",
-    "law": "mohr_coulomb",
-    "unit_weight_kn_m3": 18.0,
-    "youngs_modulus_kpa": 3000.0,
-    "poissons_ratio": 0.3,
-    "cohesion_kpa": 4.0,
-    "residual_cohesion_kpa": 1.0,
-    "residual_plastic_strain": 0.5,
-    "friction_angle_deg": 25.0,
-}
-ROCK = {
-    "name": "rock",
-    "law": "elastic",
-    "unit_weight_kn_m3": 22.0,
-    "youngs_modulus_kpa": 20000.0,
-    "poissons_ratio": 0.3,
-}
 REGIONS = [  # the rock in the middle: the other two are no neighbours in the order of the points
     {"name": "up", "material": "clay", "corners_m": [[0, 4], [6, 4], [4, 6], [0, 6]]},
     {"name": "middle", "material": "rock", "corners_m": [[0, 3], [7, 3], [6, 4], [0, 4]]},
